@@ -1,0 +1,133 @@
+"""Matrices whose rows each hold a few neighbouring entries: knot insertion, evaluation, elevation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.errors import PointError
+from knotwork.kernel import extent, kernel
+from knotwork.numbers import Array, empty, numbers
+from knotwork.space import Frozen
+
+_set = object.__setattr__
+
+
+@kernel
+def combination(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
+    """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v; one vector loop for the short sums."""
+    if v == 0:
+        for c in range(len(D)):
+            out[a, i, c] = E[j, 0] * P[a, s, c]
+    elif v == 1:
+        for c in range(len(D)):
+            out[a, i, c] = E[j, 0] * P[a, s, c] + E[j, 1] * P[a, s + 1, c]
+    elif v == 2:
+        for c in range(len(D)):
+            out[a, i, c] = E[j, 0] * P[a, s, c] + E[j, 1] * P[a, s + 1, c] + E[j, 2] * P[a, s + 2, c]
+    elif v == 3:
+        for c in range(len(D)):
+            out[a, i, c] = (
+                E[j, 0] * P[a, s, c] + E[j, 1] * P[a, s + 1, c] + E[j, 2] * P[a, s + 2, c] + E[j, 3] * P[a, s + 3, c]
+            )
+    else:
+        for c in range(len(D)):
+            total = E[j, 0] * P[a, s, c]
+            for r in range(1, v + 1):
+                total = total + E[j, r] * P[a, s + r, c]
+            out[a, i, c] = total
+
+
+@kernel
+def apply_rows(first, E, P, out, D):  # type: ignore[no-untyped-def]
+    """out[a, i] = Σ_r E[i, r] · P[a, first[i] + r] for every a and row i."""
+    v = E.shape[1] - 1
+    for a in range(len(P)):
+        for i in range(len(first)):
+            combination(out, a, i, P, first[i], E, i, v, D)
+
+
+class Banded(Frozen):
+    """A matrix given by the first column and the entries of each row.
+
+    Attributes
+    ----------
+    first : ndarray of int, shape (rows,)
+        Column of the first entry of each row.
+    entries : ndarray, shape (rows, width)
+        The entries of row i, for columns ``first[i] + 0 … width - 1``, taken modulo the number of columns where a
+        periodic space wraps around.
+    shape : (rows, columns)
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> S = kw.SplineSpace(1, [0, 0, 2, 2])
+    >>> kw.insertion_matrix(S, S.with_knots(1)).toarray().tolist()
+    [[1.0, 0.0], [0.5, 0.5], [0.0, 1.0]]
+    """
+
+    __slots__ = ("columns", "entries", "first")
+    first: Array
+    entries: Array
+    columns: int
+
+    def __init__(self, first: Array, entries: Array, columns: int) -> None:
+        first.setflags(write=False)
+        entries.setflags(write=False)
+        _set(self, "first", first)
+        _set(self, "entries", entries)
+        _set(self, "columns", columns)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows, columns."""
+        return len(self.first), self.columns
+
+    def __repr__(self) -> str:
+        return f"Banded({self.shape[0]} × {self.shape[1]}, {self.entries.shape[1]} a row)"
+
+    def __matmul__(self, other: Any) -> Array:
+        """Return the product with an array whose first axis has one element a column."""
+        array = numbers(other, "right operand", PointError)
+        if array.ndim == 0 or len(array) != self.columns:
+            raise PointError(f"right operand of shape {array.shape}: expected {self.columns} along the first axis")
+        return self.apply(array, 0)
+
+    def apply(self, array: Array, axis: int) -> Array:
+        """Return `array` with the matrix applied along one axis."""
+        shape = array.shape
+        B = int(np.prod(shape[axis + 1 :], dtype=np.int64))
+        P = array.reshape(-1 if B else 0, shape[axis], B) if B else array.reshape(0, shape[axis], 0)
+        width = self.entries.shape[1]
+        if len(self.first) and int(self.first.max()) + width > self.columns:
+            P = np.ascontiguousarray(P[:, np.arange(self.columns + width - 1) % self.columns])
+        dtype = object if self.entries.dtype == object else P.dtype
+        out = empty((len(P), len(self.first), B), dtype)
+        apply_rows(self.first, self.entries, P, out, extent(B))
+        return out.reshape(*shape[:axis], len(self.first), *shape[axis + 1 :])
+
+    def toarray(self) -> Array:
+        """Return the matrix with its zeros, shape (rows, columns)."""
+        rows, width = self.entries.shape
+        dense = empty(self.shape, self.entries.dtype)
+        dense[...] = 0 * self.entries.flat[0] if self.entries.size else 0
+        columns = (self.first[:, None] + np.arange(width)) % self.columns
+        np.add.at(dense, (np.arange(rows)[:, None], columns), self.entries)
+        return dense
+
+    def tocsr(self) -> Any:
+        """Return the matrix as a `scipy.sparse.csr_array` (scipy must be installed)."""
+        try:
+            from scipy.sparse import coo_array
+        except ImportError as exc:
+            from knotwork.errors import MissingExtra
+
+            raise MissingExtra("tocsr() needs scipy: pip install scipy") from exc
+        rows, width = self.entries.shape
+        columns = (self.first[:, None] + np.arange(width)) % self.columns
+        row = np.broadcast_to(np.arange(rows)[:, None], columns.shape)
+        matrix = coo_array((self.entries.ravel(), (row.ravel(), columns.ravel())), shape=self.shape).tocsr()
+        matrix.eliminate_zeros()
+        return matrix

@@ -1,0 +1,29 @@
+"""The errors: each says what was given and what was expected, before any work starts."""
+
+
+class KnotworkError(ValueError):
+    """Root of all errors raised for bad input."""
+
+
+class KnotError(KnotworkError):
+    """Knots that are unsorted, not finite, too few, too often repeated, outside the domain or not there."""
+
+
+class PointError(KnotworkError):
+    """Control points or weights of a wrong shape, count or value."""
+
+
+class ParameterError(KnotworkError):
+    """A parameter value, tolerance or option that makes no sense."""
+
+
+class SizeError(KnotworkError, MemoryError):
+    """A request whose result cannot fit in memory."""
+
+
+class FileError(KnotworkError):
+    """A file that cannot be read or written; the message names the file and the place in it."""
+
+
+class MissingExtra(ImportError):
+    """An optional library is not installed; the message says which extra brings it."""

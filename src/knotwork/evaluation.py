@@ -1,0 +1,169 @@
+"""Values of B-splines: which interval holds a parameter, and the basis functions that live there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.errors import ParameterError
+from knotwork.kernel import kernel
+from knotwork.knots import in_arithmetic_of
+from knotwork.numbers import Array, all_finite, empty, numbers
+from knotwork.space import SplineSpace
+
+#: parameters evaluated at a time, so that their basis functions stay in the cache
+CHUNK = 2048
+
+
+@kernel
+def cell(x, a, b, cells):  # type: ignore[no-untyped-def]
+    """Return which of `cells` equal parts of [a, b] holds x; monotone in x, so it brackets intervals safely."""
+    return max(0, min(int((x - a) / (b - a) * cells), cells - 1))
+
+
+@kernel
+def cell_table(t, first, last, table):  # type: ignore[no-untyped-def]
+    """table[c] = the last q in [first, last] with t[q] in a cell before c (or q = first)."""
+    cells = len(table) - 1
+    c = 0
+    for q in range(first, last + 1):
+        here = cell(t[q], t[first], t[last + 1], cells)
+        while c <= here:
+            table[c] = max(q - 1, first)
+            c += 1
+    while c <= cells:
+        table[c] = last
+        c += 1
+
+
+@kernel
+def locate(t, table, first, last, u, span):  # type: ignore[no-untyped-def]
+    """span[i] = the last q in [first, last] with t[q] <= u[i]: u lies in [t_q, t_{q+1}), at the right end in the last."""
+    cells = len(table) - 1
+    for i in range(len(u)):
+        x = u[i]
+        if x < t[first]:
+            span[i] = first
+        elif x >= t[last + 1]:
+            span[i] = last
+        else:
+            c = cell(x, t[first], t[last + 1], cells)
+            lo, hi = table[c], table[c + 1]
+            while lo < hi:
+                q = (lo + hi + 1) // 2
+                if t[q] <= x:
+                    lo = q
+                else:
+                    hi = q - 1
+            span[i] = lo
+
+
+@kernel
+def basis(t, n, span, u, E):  # type: ignore[no-untyped-def]
+    """E[r, i, j] = r-th derivative at u[i] of basis function span[i]-n+j, by the recurrence of Cox, de Boor and Mansfield.
+
+    The triangle is that of §2.2 read top-down: level n-r starts the derivative of order r, and the two-term
+    derivative formula takes it from there to level n.
+    """
+    orders = len(E)
+    for i in range(len(span)):
+        q, x = span[i], u[i]
+        E[0, i, 0] = x - x + 1
+        for k in range(1, n + 1):
+            r = n - k + 1
+            if r < orders:
+                for j in range(k):
+                    E[r, i, j] = E[0, i, j]
+            saved = x - x
+            for j in range(k):
+                left, right = t[q - k + 1 + j], t[q + 1 + j]
+                b = (x - left) / (right - left) * E[0, i, j]
+                E[0, i, j] = saved + (E[0, i, j] - b)
+                saved = b
+            E[0, i, k] = saved
+        for r in range(1, orders):
+            if r > n:
+                for j in range(n + 1):
+                    E[r, i, j] = x - x
+            else:
+                for k in range(n - r + 1, n + 1):
+                    saved = x - x
+                    for j in range(k):
+                        b = k * E[r, i, j] / (t[q + 1 + j] - t[q - k + 1 + j])
+                        E[r, i, j] = saved - b
+                        saved = b
+                    E[r, i, k] = saved
+
+
+@kernel
+def contract(base, offset, w, P, out, D):  # type: ignore[no-untyped-def]
+    """out[i] = Σ_l w[i, l] · P[base[i] + offset[l]]: one point of a tensor product a row."""
+    for i in range(len(base)):
+        for c in range(len(D)):
+            total = w[i, 0] * P[base[i] + offset[0], c]
+            for l in range(1, len(offset)):
+                total = total + w[i, l] * P[base[i] + offset[l], c]
+            out[i, c] = total
+
+
+class Basis:
+    """The basis functions of a space, ready to be evaluated at parameters."""
+
+    def __init__(self, space: SplineSpace, count: int) -> None:
+        """Prepare for `count` parameters: a table of cells pays for itself only if there are many."""
+        n = space.degree
+        self.space = space
+        self.t, zero = space.unrolled
+        self.first = zero if space.periodic else n
+        self.last = int(np.searchsorted(self.t, space.domain[1], "left")) - 1
+        if count < (self.last - self.first) // 8:
+            self.table = np.array([self.first, self.last])
+        else:
+            self.table = space.cached("cells", self._cells)
+
+    def _cells(self) -> Array:
+        table = np.empty(2 * (self.last + 1 - self.first) + 1, np.intp)
+        cell_table(self.t, self.first, self.last, table)
+        return table
+
+    def rows(self, u: Array, order: int = 0) -> tuple[Array, Array]:
+        """Return, for each u, the first basis function that lives there and E[r, i, j] as `basis` gives it."""
+        span = np.empty(len(u), np.intp)
+        locate(self.t, self.table, self.first, self.last, u, span)
+        n = self.space.degree
+        E = empty((order + 1, len(u), n + 1), self.t.dtype)
+        basis(self.t, n, span, u, E)
+        if self.space.periodic:
+            return (span - self.first - n) % self.space.dimension, E
+        span -= n
+        return span, E
+
+
+def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
+    """Return parameter values as an array in the space's arithmetic; wrapped into the period if there is one.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not a finite real number, or is outside the domain and `extrapolate` is false.
+    """
+    x = numbers(u, "parameters", ParameterError)
+    if x.dtype.kind == "c":
+        raise ParameterError("parameters: complex numbers given; expected real ones")
+    x = in_arithmetic_of(space.knots, x)
+    if not all_finite(x):
+        raise ParameterError("parameters: NaN or infinity given; expected finite numbers")
+    if not x.size:
+        return x
+    a, b = space.domain
+    outside = (x < a) | (x > b) if x.ndim else np.asarray(bool(x < a or x > b))
+    if outside.any():
+        if space.periodic:
+            period = b - a
+            x = np.where(outside, x - period * np.floor((x - a) / period), x)
+            return np.where((x < a) | (x >= b), a, x)  # rounding
+        if not extrapolate:
+            wrong = x.reshape(-1)[int(np.argmax(outside))]
+            raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]; extrapolate=True allows it")
+    return x

@@ -1,0 +1,46 @@
+"""Boehm's algorithm: one knot, one combination a changed point (§4.5)."""
+
+from __future__ import annotations
+
+from knotwork.kernel import kernel
+
+
+@kernel
+def boehm(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
+    """Insert u into [t_q, t_{q+1}): W_i = B(t_{i+1}, …, u, …, t_{i+n-1}) for q-n < i <= q, the rest are copies.
+
+    The new knot vector goes to s. Returns how often u was a knot before; q is sought between `first` and `last`, and
+    is the last interval that is not empty where u is the right end.
+    """
+    lo, hi = first, last
+    while lo < hi:
+        q = (lo + hi + 1) // 2
+        if t[q] <= u:
+            lo = q
+        else:
+            hi = q - 1
+    q = lo
+    m = 0
+    while q - m >= 0 and t[q - m] == u:
+        m += 1
+    while q + 1 < len(t) and t[q + 1] == u:  # the right end: u goes before its copies
+        m += 1
+        q += 1
+    if m > n:
+        return m
+    q = lo
+    s[: q + 1] = t[: q + 1]
+    s[q + 1] = u
+    s[q + 2 :] = t[q + 1 :]
+    for a in range(len(P)):
+        W[a, : q - n + 1] = P[a, : q - n + 1]
+        for i in range(q - n + 1, q + 1):
+            if t[i] == u:
+                for c in range(len(D)):
+                    W[a, i, c] = P[a, i - 1, c]
+            else:
+                b = (u - t[i]) / (t[i + n] - t[i])
+                for c in range(len(D)):
+                    W[a, i, c] = (1 - b) * P[a, i - 1, c] + b * P[a, i, c]
+        W[a, q + 1 :] = P[a, q:]
+    return m

@@ -1,0 +1,160 @@
+"""The face of knot insertion: `insert` picks the form that is fastest for the job."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.banded import Banded
+from knotwork.calculus import as_blocks
+from knotwork.errors import KnotError
+from knotwork.insertion.boehm import boehm
+from knotwork.insertion.merge import refined, rows_of_matrix
+from knotwork.kernel import extent
+from knotwork.knots import combine
+from knotwork.numbers import Array
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+
+def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
+    """Return the same spline with further knots.
+
+    Parameters
+    ----------
+    spline : Spline
+    knots : number or array_like
+        New knots in the domain of the parameter, in any order; repeats raise the multiplicity.
+    axis : int
+        Which parameter of a surface or volume.
+
+    Raises
+    ------
+    KnotError
+        If a knot is not finite, lies outside the domain, or would get a multiplicity above degree + 1.
+
+    Notes
+    -----
+    One knot takes Boehm's algorithm (§4.5), several the improved Oslo algorithm as a merge (§4.15). Exact in exact
+    arithmetic.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> kw.insert(c, 0.5).points.tolist()
+    [[0.0, 0.0], [0.5, 1.0], [2.0, 2.0], [3.5, 1.0], [4.0, 0.0]]
+    """
+    spaces = spline.spaces
+    if axis or len(spaces) > 1:
+        axis = spline.axis(axis)
+    space = spaces[axis]
+    if type(knots) is float and not space.periodic and space.knots.dtype == np.float64:
+        return _one(spline, knots, axis)
+    target, new = space.refinement(knots)
+    return refine_to(spline, axis, target, new)
+
+
+def _one(spline: Spline, u: float, axis: int) -> Spline:
+    """Insert one float knot into a space that is not periodic."""
+    space, P = spline.spaces[axis], spline.coefficients
+    t, n = space.knots, space.degree
+    N = len(t) - n - 1
+    if not t[n] <= u <= t[N]:
+        space.refinement(u)  # says what is wrong with it
+    blocks = P.reshape(1, N, -1) if axis == 0 else as_blocks(P, axis)
+    A, _, B = blocks.shape
+    W = np.empty((A, N + 1, B), P.dtype)
+    s = np.empty(len(t) + 1)
+    m = boehm(t, blocks, n, n, N - 1, u, s, W, extent(B))
+    if m > n:
+        raise KnotError(f"knot {u} has multiplicity {m + 1}; degree {n} allows at most {n + 1}")
+    shape = P.shape
+    return spline.with_axis(axis, SplineSpace.trusted(n, s), W.reshape(*shape[:axis], N + 1, *shape[axis + 1 :]))
+
+
+def refine_to(spline: Spline, axis: int, target: SplineSpace, new: Array) -> Spline:
+    """Return the spline over `target`, which has the sorted knots `new` in addition (trusted)."""
+    space, P = spline.spaces[axis], as_blocks(spline.coefficients, axis)
+    n = space.degree
+    if space.periodic:
+        t, W, stop, lo, left = _around(space, new)
+        P = np.ascontiguousarray(P[:, space.wrapped(-left, len(t) - n - 1)])
+    else:
+        t, W, stop, lo = space.knots, new, space.dimension, 0
+    out = refined(t, W, stop, n, P, lo, target.dimension)
+    shape = spline.coefficients.shape
+    return spline.with_axis(axis, target, out.reshape(*shape[:axis], target.dimension, *shape[axis + 1 :]))
+
+
+def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int]:
+    """Return a periodic space's knots unrolled, its new knots likewise, and where knot 0 stands in the merge of both.
+
+    The merge puts old knots before equal new ones everywhere: `stop` is beyond the end. The last two numbers are the
+    merged knots and the old knots before knot 0.
+    """
+    t, left = space.unrolled
+    a, b = space.domain
+    if not len(new):
+        return t, new, len(t), left, left
+    turns = [new]
+    while turns[0][0] > t[0]:
+        turns.insert(0, a - (b - turns[0]))
+    while turns[-1][-1] < t[-1]:
+        turns.append(b + (turns[-1] - a))
+    W = np.concatenate(turns)
+    W = W[(t[0] <= W) & (t[-1] >= W)]
+    return t, W, len(t), left + int(np.searchsorted(W, a, "left")), left
+
+
+def insertion_matrix(space: SplineSpace, refined: SplineSpace) -> Banded:
+    """Return the matrix that takes control points over `space` to those over `refined`.
+
+    Parameters
+    ----------
+    space, refined : SplineSpace
+        Of equal degree; `refined` has all knots of `space`, and further ones inside the domain.
+
+    Returns
+    -------
+    Banded, shape (refined.dimension, space.dimension)
+        Row i holds the discrete B-splines α_j(i), which are not negative and sum to one (§4.13).
+
+    Raises
+    ------
+    KnotError
+        If `refined` is not a refinement of `space`.
+    """
+    new = missing_knots(space, refined)
+    n = space.degree
+    if not space.periodic:
+        start, count, E = rows_of_matrix(space.knots, new, space.dimension, n, 0, refined.dimension)
+        # move the short rows left, so that no row reaches past the last column
+        shift = np.maximum(start + n + 1 - space.dimension, 0)
+        first = start - shift
+    else:
+        t, W, stop, lo, left = _around(space, new)
+        start, count, E = rows_of_matrix(t, W, stop, n, lo, refined.dimension)
+        first, shift = (start - left) % space.dimension, np.zeros_like(start)
+    columns = np.arange(n + 1) - shift[:, None]
+    inside = (columns >= 0) & (columns <= count[:, None])
+    entries = np.where(inside, np.take_along_axis(E, np.where(inside, columns, 0), 1), _zero(E))
+    return Banded(first, entries, space.dimension)
+
+
+def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:
+    """Return the knots that `refined` has and `space` has not, with multiplicity; raise if it is no refinement."""
+    if refined.degree != space.degree or refined.periodic != space.periodic:
+        raise KnotError(f"{refined!r} does not refine {space!r}: expected equal degrees, both periodic or neither")
+    if not space <= refined:
+        raise KnotError(f"{refined!r} does not refine {space!r}: it lacks knots, or its domain differs")
+    new = combine(refined.knots, space.knots, lambda there, here: there - here)
+    a, b = space.domain
+    if len(new) and (new[0] < a or new[-1] > b):
+        raise KnotError(f"{refined!r} has new knots outside the domain [{a}, {b}]")
+    return new
+
+
+def _zero(E: Array) -> Any:
+    return E.flat[0] * 0 if E.dtype == object and E.size else 0

@@ -1,0 +1,201 @@
+"""One source for each algorithm, run as it stands or compiled.
+
+A function marked `@kernel` is plain Python over arrays, scalars and loops. The same text runs
+
+- *plain*, over anything: `Fraction`, `mpmath`, a counting scalar, or floats when the job is small;
+- *compiled* by Numba over float64, float32 and complex128, once the work pays for loading Numba.
+
+Both give equal results bit for bit (no fastmath). Arrays of dtype object always take the plain source.
+The environment variable ``KNOTWORK_JIT`` chooses: ``auto`` (default), ``always`` or ``never``.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import CodeType, FunctionType
+from typing import Any
+
+import numpy as np
+
+MODES = ("auto", "always", "never")
+#: seconds of plain work that pay for importing Numba and fetching the first kernels from the cache
+LOADING_PAYS = 0.4
+#: seconds of plain work per array element, roughly: what a kernel is expected to cost before it is timed
+PER_ELEMENT = 0.35e-6
+#: dimensions up to this one are known to the compiler, which unrolls the loops over them
+UNROLLED = 4
+
+KERNELS: list[Kernel] = []
+
+_OBJECT = np.dtype(object)
+_lock = threading.RLock()
+_spent = 0.0
+
+
+def _mode_from_environment() -> str:
+    mode = os.environ.get("KNOTWORK_JIT", "auto")
+    if mode not in MODES:
+        raise ValueError(f"KNOTWORK_JIT is {mode!r}; expected one of {', '.join(MODES)}")
+    return mode
+
+
+mode = _mode_from_environment()
+
+
+class Kernel:
+    """An algorithm with one source; calling it runs that source plain or compiled.
+
+    `variant` gives the same text with some of the kernels it calls replaced by others.
+    """
+
+    def __init__(self, source: FunctionType, names: dict[str, Kernel] | None = None) -> None:
+        functools.update_wrapper(self, source)
+        self.source = source
+        self.names = names or {}
+        self._compiled: Callable[..., Any] | None = None
+        KERNELS.append(self)
+
+    def __repr__(self) -> str:
+        return f"<kernel {self.source.__module__}.{self.source.__name__}>"
+
+    def __call__(self, *args: Any) -> Any:
+        """Run on `args`: plain if any array holds objects, else as the mode says."""
+        compiled = self._compiled if mode != "never" else None
+        if compiled is None:
+            return self._first_calls(args)
+        for a in args:
+            if type(a) is np.ndarray and a.dtype is _OBJECT:
+                return self.plain(*args)
+        return compiled(*args)
+
+    def variant(self, **names: Kernel) -> Kernel:
+        """Return the same source with the given kernel names bound to other kernels."""
+        return Kernel(self.source, {**self.names, **names})
+
+    def _first_calls(self, args: tuple[Any, ...]) -> Any:
+        """Run plain until the accumulated work pays for compiled code."""
+        global _spent
+        arrays = [a for a in args if isinstance(a, np.ndarray)]
+        if mode == "never" or any(a.dtype == _OBJECT for a in arrays):
+            return self.plain(*args)
+        expected = PER_ELEMENT * sum(a.size for a in arrays)
+        if mode == "always" or "numba" in sys.modules or _spent + expected > LOADING_PAYS:
+            return self.compiled(*args)
+        start = time.perf_counter()
+        # compiled code is silent about overflow and 0/0, so the plain source is too
+        with np.errstate(all="ignore"):
+            result = self.plain(*args)
+        _spent += time.perf_counter() - start
+        return result
+
+    def _callees(self) -> Iterator[tuple[str, Kernel]]:
+        """Yield the kernels that the source calls, by the name it calls them."""
+        for name in self.source.__code__.co_names:
+            target = self.names.get(name, self.source.__globals__.get(name))
+            if isinstance(target, Kernel):
+                yield name, target
+
+    def _bound(self, functions: dict[str, Any]) -> FunctionType:
+        """Return the source's code in a namespace where the names of kernels mean `functions`."""
+        namespace = {**self.source.__globals__, **functions}
+        bound = FunctionType(self.source.__code__, namespace, self.source.__name__, self.source.__defaults__)
+        bound.__qualname__ = self.source.__qualname__
+        bound.__module__ = self.source.__module__
+        return bound
+
+    @functools.cached_property
+    def plain(self) -> FunctionType:
+        """The source as it stands; the kernels it calls are plain too."""
+        return self._bound({name: callee.plain for name, callee in self._callees()})
+
+    @property
+    def compiled(self) -> Callable[..., Any]:
+        """The source compiled by Numba, kept on disk where possible."""
+        if self._compiled is None:
+            with _lock:
+                if self._compiled is None:
+                    bound = self._bound({name: callee.compiled for name, callee in self._callees()})
+                    self._compiled = _compile(bound, self.digest)
+        return self._compiled
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """A hash of the source, of all kernels below it and of the constants they use."""
+        hasher = hashlib.sha256()
+        _hash_code(hasher, self.source.__code__)
+        for name in self.source.__code__.co_names:
+            value = self.source.__globals__.get(name)
+            if isinstance(value, int | float | str | tuple):
+                hasher.update(f"{name}={value!r};".encode())
+        for name, callee in self._callees():
+            hasher.update(f"{name}:{callee.digest};".encode())
+        return hasher.hexdigest()[:16]
+
+
+def kernel(source: Callable[..., Any]) -> Kernel:
+    """Mark a plain function over arrays, scalars and loops as an algorithm with one source."""
+    assert isinstance(source, FunctionType)
+    return Kernel(source)
+
+
+def extent(count: int) -> Any:
+    """Return something of length `count` for a kernel to loop over: a tuple, known to the compiler, if short."""
+    return (0,) * count if count <= UNROLLED else np.empty(count, np.int8)
+
+
+def _hash_code(hasher: Any, code: CodeType) -> None:
+    """Feed everything of a code object that matters, but neither its file nor its lines."""
+    hasher.update(code.co_code)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            _hash_code(hasher, constant)
+        else:
+            hasher.update(repr(constant).encode())
+    hasher.update(repr((code.co_names, code.co_varnames, code.co_argcount)).encode())
+
+
+def cache_directory() -> Path:
+    """Return the directory of compiled kernels: ``$KNOTWORK_CACHE`` or the user's cache directory."""
+    given = os.environ.get("KNOTWORK_CACHE")
+    if given:
+        return Path(given)
+    base = os.environ.get("LOCALAPPDATA" if os.name == "nt" else "XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "knotwork"
+
+
+def _compile(bound: FunctionType, digest: str) -> Callable[..., Any]:
+    """Compile, with a disk cache in a directory of this very source; without one if it is not writable."""
+    import numba
+
+    def dispatcher() -> Any:
+        return numba.njit(nogil=True, error_model="numpy")(bound)
+
+    cached, previous = dispatcher(), numba.config.CACHE_DIR
+    try:
+        directory = cache_directory() / f"{bound.__name__}-{digest}"
+        numba.config.CACHE_DIR = str(directory)
+        cached.enable_caching()
+    except (RuntimeError, OSError):  # no writable place
+        return dispatcher()  # type: ignore[no-any-return]
+    finally:
+        numba.config.CACHE_DIR = previous
+    cache = cached._cache
+    if not Path(cache.cache_path).is_relative_to(directory):
+        return dispatcher()  # type: ignore[no-any-return]  # Numba's other places are not keyed by the digest
+    save = cache.save_overload
+
+    def save_if_possible(*args: Any) -> None:
+        try:
+            save(*args)
+        except OSError:  # the disk is full, or the directory was made read-only since
+            cache.disable()
+
+    cache.save_overload = save_if_possible
+    return cached  # type: ignore[no-any-return]

@@ -1,0 +1,101 @@
+"""Knot vectors: validation, multiplicities, nodes, unions and intersections. Knots compare exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from knotwork.errors import KnotError
+from knotwork.numbers import Array, numbers, require_finite
+
+
+def sorted_knots(knots: Any, what: str = "knots") -> Array:
+    """Return `knots` as an array (float64 or exact) after checking that they are finite and nondecreasing."""
+    t = numbers(knots, what, KnotError)
+    if t.ndim != 1:
+        raise KnotError(f"{what}: an array of shape {t.shape} given; expected a flat list")
+    if t.dtype.kind == "c":
+        raise KnotError(f"{what}: complex numbers given; expected real knots")
+    if t.dtype == np.float32:
+        t = t.astype(np.float64)
+    require_finite(t, what, KnotError)
+    descents = t[1:] < t[:-1]
+    if descents.any():
+        i = int(np.argmax(descents))
+        raise KnotError(f"{what}[{i}] = {t[i]} is above {what}[{i + 1}] = {t[i + 1]}; expected nondecreasing knots")
+    if t.dtype != object and len(t) and not np.isfinite(float(t[-1]) - float(t[0])):
+        raise KnotError(f"{what} reach from {t[0]} to {t[-1]}: the difference overflows float64")
+    return t
+
+
+def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:
+    """Return new knots sorted, in the arithmetic of `like`, after checking that they lie in `domain`."""
+    x = np.atleast_1d(numbers(knots, "new knots", KnotError))
+    if x.ndim != 1:
+        raise KnotError(f"new knots: an array of shape {x.shape} given; expected a number or a flat list")
+    if x.dtype.kind == "c":
+        raise KnotError("new knots: complex numbers given; expected real knots")
+    x = in_arithmetic_of(like, x, "new knots")
+    require_finite(x, "new knots", KnotError)
+    if (x[1:] < x[:-1]).any():
+        x = np.sort(x)
+    if len(x) and (x[0] < domain[0] or x[-1] > domain[1]):
+        outside = x[0] if x[0] < domain[0] else x[-1]
+        raise KnotError(f"knot {outside} is outside the domain [{domain[0]}, {domain[1]}]")
+    return x
+
+
+def in_arithmetic_of(like: Array, x: Array, what: str = "parameters") -> Array:
+    """Return `x` exact where `like` is exact, float64 otherwise."""
+    if like.dtype == object:
+        return x if x.dtype == object else numbers(x.astype(object), what, KnotError)
+    return x.astype(np.float64) if x.dtype != np.float64 else x
+
+
+def distinct(knots: Array) -> tuple[Array, Array]:
+    """Return the distinct values of sorted knots and the multiplicity of each."""
+    starts = np.flatnonzero(np.append(True, knots[1:] != knots[:-1])) if len(knots) else np.zeros(0, int)
+    return knots[starts], np.diff(np.append(starts, len(knots)))
+
+
+def require_multiplicity(knots: Array, degree: int) -> None:
+    """Raise unless no knot is repeated more than degree + 1 times (degree + 1 makes a jump)."""
+    order = degree + 1
+    overshoot = knots[order:] == knots[:-order]
+    if overshoot.any():
+        x = knots[int(np.argmax(overshoot))]
+        raise KnotError(f"knot {x} has multiplicity {int(np.sum(knots == x))}; degree {degree} allows at most {order}")
+
+
+def merged(a: Array, b: Array) -> Array:
+    """Return all knots of both, sorted: multiplicities add."""
+    return np.sort(np.concatenate([a, b]), kind="stable")
+
+
+def multiset(knots: Iterable[Any]) -> dict[Any, int]:
+    """Return the multiplicity of each distinct knot."""
+    values, counts = distinct(np.asarray(knots))
+    return dict(zip(values.tolist(), counts.tolist(), strict=True))
+
+
+def combine(a: Array, b: Array, pick: Any) -> Array:
+    """Return the knots whose multiplicity is `pick(multiplicity in a, multiplicity in b)`: max, min or a difference."""
+    in_a, in_b = multiset(a), multiset(b)
+    values = sorted(in_a.keys() | in_b.keys())
+    dtype = object if object in (a.dtype, b.dtype) else np.float64
+    result = [x for x in values for _ in range(pick(in_a.get(x, 0), in_b.get(x, 0)))]
+    array = np.empty(len(result), dtype)
+    array[:] = result
+    return array
+
+
+def nodes(knots: Array, degree: int, count: int) -> Array:
+    """Return the nodes (Greville abscissae): the mean of knots i+1 … i+degree, for i below `count`."""
+    if degree == 0:
+        return knots[:count] + (knots[1 : count + 1] - knots[:count]) / 2
+    total = knots[1 : count + 1] / degree
+    for j in range(2, degree + 1):
+        total = total + knots[j : count + j] / degree
+    return total

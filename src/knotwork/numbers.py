@@ -1,0 +1,94 @@
+"""Arrays of numbers: what is accepted, and in which arithmetic it is kept.
+
+float64, float32 and complex128 are kept as given; integers become float64. An array of dtype object keeps its
+elements (Fraction, mpmath, …), but its integers become Fractions, so that division stays exact.
+"""
+
+from __future__ import annotations
+
+import os
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knotwork.errors import KnotworkError, SizeError
+
+Array = NDArray[Any]
+
+_KEPT = {np.dtype(t) for t in (np.float64, np.float32, np.complex128, object)}
+
+
+def numbers(values: Any, what: str, error: type[KnotworkError]) -> Array:
+    """Return `values` as a C-ordered array in one of the kept arithmetics; `error` says what is wrong with `what`."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise error(f"{what}: a masked array was given; expected plain numbers")
+    try:
+        array = np.asarray(values, order="C")
+    except ValueError as exc:
+        raise error(f"{what}: the rows have different lengths; expected a rectangular array") from exc
+    if array.dtype in _KEPT:
+        if array.dtype != object:
+            return array
+        return exact(array, what, error)
+    if array.dtype.kind in "biu" or array.dtype == np.float16:
+        return array.astype(np.float64)
+    if array.dtype == np.complex64:
+        return array.astype(np.complex128)
+    raise error(f"{what}: {array.dtype} given; expected numbers (float64, float32, complex128 or exact objects)")
+
+
+def exact(array: Array, what: str, error: type[KnotworkError]) -> Array:
+    """Return an object array in which integers and floats are Fractions of the same value."""
+    result = np.empty(array.shape, dtype=object)
+    flat = result.reshape(-1)
+    for i, x in enumerate(array.reshape(-1).tolist()):
+        flat[i] = exact_number(x, what, error)
+    return result
+
+
+def exact_number(x: Any, what: str, error: type[KnotworkError]) -> Any:
+    """Return an int or float as the Fraction of the same value, any other number as it is."""
+    if isinstance(x, int | float | np.integer | np.floating):
+        try:
+            return Fraction(x if isinstance(x, int | float) else x.item())
+        except (ValueError, OverflowError):
+            raise error(f"{what}: {x} given; expected finite numbers") from None
+    if isinstance(x, str | bytes) or not hasattr(x, "__mul__") or not hasattr(x, "__add__") or hasattr(x, "__len__"):
+        raise error(f"{what}: {x!r} given; expected numbers")
+    return x
+
+
+def all_finite(array: Array) -> bool:
+    """Tell whether no element is NaN or infinite; exact numbers are finite unless they say otherwise."""
+    if array.dtype == object:
+        return all(x == x and abs(x) != float("inf") for x in array.reshape(-1).tolist())
+    return bool(np.isfinite(array).all())
+
+
+def require_finite(array: Array, what: str, error: type[KnotworkError]) -> None:
+    """Raise `error`, naming the first place, unless all elements are finite."""
+    if not all_finite(array):
+        place, x = next((i, x) for i, x in np.ndenumerate(array) if not all_finite(np.asarray(x)))
+        raise error(f"{what}[{', '.join(map(str, place))}] is {x}; expected finite numbers")
+
+
+def empty(shape: tuple[int, ...], dtype: Any) -> Array:
+    """Allocate an array, or say how large it would have been."""
+    size = np.dtype(dtype).itemsize
+    for count in shape:
+        size *= int(count)
+    if size > 1 << 30 and size > _physical_memory():
+        raise SizeError(
+            f"the result would be {' × '.join(map(str, shape))} numbers ({size / 1e9:.3g} GB); "
+            f"this machine has {_physical_memory() / 1e9:.3g} GB"
+        )
+    return np.empty(shape, dtype)
+
+
+def _physical_memory() -> int:
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):  # not known on this system: only the address space limits
+        return 1 << 46

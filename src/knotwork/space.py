@@ -1,0 +1,375 @@
+"""Spline spaces: a degree and knots; the sets that splines are points of, closed under ∩ and +."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import FrozenInstanceError
+from typing import Any, Self
+
+import numpy as np
+
+from knotwork.errors import KnotError, ParameterError
+from knotwork.knots import (
+    combine,
+    distinct,
+    in_arithmetic_of,
+    merged,
+    new_knots,
+    nodes,
+    require_multiplicity,
+    sorted_knots,
+)
+from knotwork.numbers import Array, empty, exact, numbers
+
+_set = object.__setattr__
+
+
+class Frozen:
+    """A value: its attributes are set once, when it is made."""
+
+    __slots__ = ()
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise FrozenInstanceError(f"cannot assign to {name!r}: a {type(self).__name__} is a value")
+
+    def __delattr__(self, name: str) -> None:
+        raise FrozenInstanceError(f"cannot delete {name!r}: a {type(self).__name__} is a value")
+
+
+class SplineSpace(Frozen):
+    """All splines of one degree over one knot vector.
+
+    Parameters
+    ----------
+    degree : int
+        Degree of the polynomial pieces, 0 or more.
+    knots : array_like
+        Nondecreasing knots, each at most ``degree + 1`` times (``degree`` times: continuous; ``degree + 1``: a jump).
+        Ends may be clamped or not: the domain is ``[knots[degree], knots[-degree - 1]]``.
+        Integers become float64; Fractions and other exact numbers are kept.
+    periodic : bool
+        If true, `knots` cover one period and its end: knots in the half-open period, the seam counted once with its
+        multiplicity at the start, then the end of the period, once. The dimension is the number of knots in the
+        half-open period, and basis function i starts at knot i, as in the ordinary case.
+
+    Raises
+    ------
+    KnotError
+        If the knots are not finite, not sorted, too few, or repeated too often.
+
+    Notes
+    -----
+    Control point i is the blossom at knots i+1 … i+degree, and basis function i lives on [knot i, knot i+degree+1]
+    (Goldman & Lyche, §1.4 and §5.2). Knots compare exactly.
+
+    Examples
+    --------
+    >>> S = SplineSpace(2, [0, 0, 0, 1, 2, 2, 2])
+    >>> S.dimension, S.domain, S.nodes.tolist()
+    (4, (0.0, 2.0), [0.0, 0.5, 1.5, 2.0])
+    >>> S <= S.with_knots([0.5])
+    True
+    """
+
+    __slots__ = ("_cache", "degree", "knots", "periodic")
+    degree: int
+    knots: Array
+    periodic: bool
+
+    def __init__(self, degree: int, knots: Any, *, periodic: bool = False) -> None:
+        if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
+            raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
+        degree = int(degree)
+        t = sorted_knots(knots)
+        require_enough(t, degree, periodic)
+        if t is knots or t.base is not None or not t.flags.owndata:
+            t = t.copy()
+        if periodic:
+            require_one_end(t)
+            require_multiplicity(t, degree)
+        else:
+            require_multiplicity(t, degree)
+            if not t[degree] < t[-degree - 1]:
+                raise KnotError(f"the domain [{t[degree]}, {t[-degree - 1]}] is empty; expected distinct end knots")
+        self._fill(degree, t, bool(periodic))
+
+    def _fill(self, degree: int, knots: Array, periodic: bool) -> None:
+        knots.setflags(write=False)
+        _set(self, "degree", degree)
+        _set(self, "knots", knots)
+        _set(self, "periodic", periodic)
+        _set(self, "_cache", {})
+
+    @classmethod
+    def trusted(cls, degree: int, knots: Array, periodic: bool = False) -> Self:
+        """Return a space of knots already known to be valid; the array is frozen, not copied."""
+        self = cls.__new__(cls)
+        self._fill(degree, knots, periodic)
+        return self
+
+    # ---- named spaces -------------------------------------------------------------------------------------------
+
+    @classmethod
+    def clamped(cls, degree: int, n: int) -> Self:
+        """Return the space of dimension `n` over [0, 1] with evenly spaced interior knots and ends of full multiplicity."""
+        _require_dimension(degree, n, degree + 1)
+        inner = _even(n - degree)
+        return cls(degree, np.concatenate([np.zeros(degree), inner, np.ones(degree)]))
+
+    @classmethod
+    def uniform(cls, degree: int, n: int, *, periodic: bool = False) -> Self:
+        """Return the space of dimension `n` with evenly spaced knots and the domain [0, 1], not clamped."""
+        if periodic:
+            _require_dimension(degree, n, 1)
+            return cls(degree, _even(n), periodic=True)
+        _require_dimension(degree, n, degree + 1)
+        spans = n - degree
+        outside = np.arange(1, degree + 1) / spans
+        return cls(degree, np.concatenate([-outside[::-1], _even(spans), 1 + outside]))
+
+    @classmethod
+    def bezier(cls, degree: int, breaks: Any) -> Self:
+        """Return the space of continuous pieces over increasing `breaks`: the ends `degree + 1` times, the others `degree`.
+
+        For degree 0 the pieces jump.
+        """
+        x = sorted_knots(breaks, "breaks")
+        if len(x) < 2 or (x[1:] == x[:-1]).any():
+            raise KnotError(
+                f"breaks: {len(x)} given, {len(distinct(x)[0])} distinct; expected two or more distinct breaks"
+            )
+        inner = np.repeat(x[1:-1], max(degree, 1))
+        return cls(degree, np.concatenate([np.repeat(x[:1], degree + 1), inner, np.repeat(x[-1:], degree + 1)]))
+
+    # ---- what a space is ----------------------------------------------------------------------------------------
+
+    @property
+    def order(self) -> int:
+        """Degree + 1."""
+        return self.degree + 1
+
+    @property
+    def dimension(self) -> int:
+        """The number of control points of a spline of this space."""
+        return len(self.knots) - (1 if self.periodic else self.degree + 1)
+
+    @property
+    def domain(self) -> tuple[Any, Any]:
+        """The first and the last parameter value; a period if periodic."""
+        n = 0 if self.periodic else self.degree
+        return self.knots[n], self.knots[-n - 1]
+
+    @property
+    def exact(self) -> bool:
+        """Whether the knots are exact numbers (dtype object) and not floats."""
+        return self.knots.dtype == object
+
+    @property
+    def nodes(self) -> Array:
+        """The Greville abscissae, one for each control point; a periodic space's last ones pass the end of the period."""
+        t, first = self.unrolled
+        return nodes(t[first:], self.degree, self.dimension)
+
+    @property
+    def breaks(self) -> Array:
+        """The distinct knots in the domain, ends included."""
+        n = 0 if self.periodic else self.degree
+        return distinct(self.knots[n : len(self.knots) - n])[0]
+
+    def multiplicity(self, x: Any) -> int:
+        """Return how often the knot `x` occurs; 0 if it is not a knot."""
+        t = self.knots
+        if self.periodic and x == t[-1]:
+            x = t[0]
+        return int(np.searchsorted(t, x, "right") - np.searchsorted(t, x, "left"))
+
+    @property
+    def unrolled(self) -> tuple[Array, int]:
+        """An ordinary knot vector that covers the domain, and the index in it of knot 0.
+
+        The knots themselves, and 0, unless periodic: then `degree + 1` knots go before the period, and
+        `2 · degree + 2` follow.
+        """
+        if not self.periodic:
+            return self.knots, 0
+        return self.cached("unrolled", lambda: (self._turns(-self.order, self.dimension + 2 * self.order), self.order))
+
+    def _turns(self, lo: int, hi: int) -> Array:
+        """Return knots lo … hi of the periodic sequence, t[i + dimension] = t[i] + period, nondecreasing in floats too."""
+        t, n = self.knots, self.dimension
+        turn, index = np.divmod(np.arange(lo, hi + 1), n)
+        if self.exact:
+            turn = turn.astype(object)
+        start, end = t[0], t[-1]
+        after = end + ((t[index] - start) + (turn - 1) * (end - start))
+        before = start - ((end - t[index]) + (-turn - 1) * (end - start))
+        unrolled: Array = np.where(turn == 0, t[index], np.where(turn > 0, after, before))
+        return unrolled
+
+    def wrapped(self, first: int, count: int) -> Array:
+        """Return the indices of the control points `first` … `first + count - 1`, taken around the period."""
+        return np.arange(first, first + count) % self.dimension
+
+    def cached(self, name: str, make: Callable[[], Any]) -> Any:
+        """Return what `make` gave the first time."""
+        try:
+            return self._cache[name]
+        except KeyError:
+            return self._cache.setdefault(name, make())
+
+    # ---- the algebra --------------------------------------------------------------------------------------------
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SplineSpace):
+            return NotImplemented
+        return (
+            self.degree == other.degree
+            and self.periodic == other.periodic
+            and len(self.knots) == len(other.knots)
+            and bool(np.all(self.knots == other.knots))
+        )
+
+    def __hash__(self) -> int:
+        return int(self.cached("hash", lambda: hash((self.degree, self.periodic, *self.knots.tolist()))))
+
+    def __repr__(self) -> str:
+        t = self.knots.tolist()
+        shown = ", ".join(map(str, t if len(t) <= 16 else [*t[:6], "…", *t[-6:]]))
+        return f"SplineSpace({self.degree}, [{shown}]{', periodic=True' if self.periodic else ''})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (type(self), self.degree, self.knots, self.periodic)
+
+    def __le__(self, other: SplineSpace) -> bool:
+        """Tell whether every spline of this space lies in `other`.
+
+        For equal degrees: `other` has all of these knots, end knots included, so that it is a refinement. For a higher
+        degree of `other`: the same domain, and each knot inside it at least as many more times as the degree is higher.
+        """
+        raised = other.degree - self.degree
+        if raised < 0 or self.periodic != other.periodic or self.domain != other.domain:
+            return False
+        inside = slice(None) if raised == 0 else slice(self.degree, len(self.knots) - self.degree)
+        if self.periodic:
+            inside = slice(0, -1)
+        values, counts = distinct(self.knots[inside])
+        if raised and not self.periodic:
+            values, counts = values[1:-1], counts[1:-1]
+        found = np.searchsorted(other.knots, values, "right") - np.searchsorted(other.knots, values, "left")
+        return bool(np.all(found >= counts + raised))
+
+    def __ge__(self, other: SplineSpace) -> bool:
+        """Tell whether this space holds every spline of `other`."""
+        return other <= self
+
+    def __lt__(self, other: SplineSpace) -> bool:
+        return self <= other and self != other
+
+    def __gt__(self, other: SplineSpace) -> bool:
+        return other < self
+
+    def __and__(self, other: SplineSpace) -> SplineSpace:
+        """Return the intersection: the smaller multiplicity of each knot (§5.3)."""
+        return self._with(other, min, "intersection")
+
+    def __or__(self, other: SplineSpace) -> SplineSpace:
+        """Return the sum, the smallest space that holds both: the larger multiplicity of each knot (§5.3)."""
+        return self._with(other, max, "sum")
+
+    def _with(self, other: SplineSpace, pick: Callable[[int, int], int], name: str) -> SplineSpace:
+        if not isinstance(other, SplineSpace):
+            return NotImplemented
+        if (self.degree, self.periodic) != (other.degree, other.periodic):
+            raise KnotError(f"the {name} of {self!r} and {other!r}: expected equal degrees, both periodic or neither")
+        if self.domain != other.domain:
+            raise KnotError(f"the {name} of spaces over {self.domain} and {other.domain}: expected equal domains")
+        result = type(self)(self.degree, combine(self.knots, other.knots, pick), periodic=self.periodic)
+        if result.domain != self.domain:
+            raise KnotError(
+                f"the {name} of spaces with different knots outside the domain {self.domain}: clamp them first"
+            )
+        return result
+
+    def with_knots(self, knots: Any) -> SplineSpace:
+        """Return the space with further knots (a number or a list, in any order) inside the domain.
+
+        Raises
+        ------
+        KnotError
+            If a knot is outside the domain or would be repeated more than `degree + 1` times.
+        """
+        return self.refinement(knots)[0]
+
+    def refinement(self, knots: Any) -> tuple[SplineSpace, Array]:
+        """Return the space with further knots, and those knots sorted; in a period, the seam counts at its start."""
+        x = new_knots(knots, self.knots, self.domain)
+        if self.periodic and len(x) and x[-1] == self.knots[-1]:
+            seam = np.searchsorted(x, self.knots[-1], "left")
+            x = np.concatenate([np.repeat(self.knots[:1], len(x) - seam), x[:seam]])
+        refined = merged(self.knots, x)
+        require_multiplicity(refined, self.degree)
+        return SplineSpace.trusted(self.degree, refined, self.periodic), x
+
+    def without_knots(self, knots: Any) -> SplineSpace:
+        """Return the space with fewer knots.
+
+        Raises
+        ------
+        KnotError
+            If a knot is not there as often as it is to be removed, or if removing it would change the domain.
+        """
+        x = np.atleast_1d(numbers(knots, "knots to remove", KnotError))
+        x = np.sort(in_arithmetic_of(self.knots, x, "knots to remove"))
+        if self.periodic:
+            x = np.sort(np.where(x == self.knots[-1], self.knots[0], x))
+        for value, count in zip(*distinct(x), strict=True):
+            if self.multiplicity(value) < count:
+                raise KnotError(
+                    f"knot {value} is there {self.multiplicity(value)} times; cannot remove it {count} times"
+                )
+        left = SplineSpace(self.degree, combine(self.knots, x, lambda a, b: a - b), periodic=self.periodic)
+        if left.domain != self.domain:
+            raise KnotError(f"without these knots the domain {self.domain} would become {left.domain}")
+        return left
+
+    def in_exact_arithmetic(self) -> SplineSpace:
+        """Return the same space with each float knot as the Fraction of the same value."""
+        if self.exact:
+            return self
+        return SplineSpace.trusted(self.degree, exact(self.knots, "knots", KnotError), self.periodic)
+
+
+def require_enough(knots: Array, degree: int, periodic: bool) -> None:
+    """Raise unless there are knots for at least one control point."""
+    least = 2 if periodic else 2 * degree + 2
+    if len(knots) < least:
+        kind = "a periodic space" if periodic else f"degree {degree}"
+        raise KnotError(f"{len(knots)} knots given; {kind} needs at least {least}")
+
+
+def require_one_end(knots: Array) -> None:
+    """Raise unless the end of the period occurs once, after the start: the seam counts at the start."""
+    if knots[-1] == knots[0]:
+        raise KnotError(f"the period [{knots[0]}, {knots[-1]}] is empty; expected distinct end knots")
+    if len(knots) > 1 and knots[-2] == knots[-1]:
+        raise KnotError(
+            f"the end {knots[-1]} of the period is given {int(np.sum(knots == knots[-1]))} times; expected once: "
+            f"the seam is counted at the start of the period"
+        )
+
+
+def _require_dimension(degree: int, n: int, least: int) -> None:
+    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
+        raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
+    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < least:
+        raise ParameterError(f"dimension {n!r} given; degree {degree} needs at least {least}")
+    empty((n + 2 * degree + 2,), np.float64)
+
+
+def _even(spans: int) -> Array:
+    """Return 0, 1/spans, …, 1."""
+    return np.arange(spans + 1) / spans
+
+
+def _restore(cls: type[SplineSpace], degree: int, knots: Array, periodic: bool) -> SplineSpace:
+    return cls.trusted(degree, knots, periodic)

@@ -1,0 +1,537 @@
+"""Splines as values: a point in a tensor product of spline spaces; curves, surfaces, volumes."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import Any, Self
+
+import numpy as np
+
+from knotwork.banded import Banded
+from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.evaluation import CHUNK, Basis, contract, parameters
+from knotwork.kernel import extent
+from knotwork.numbers import Array, empty, exact, numbers, require_finite
+from knotwork.space import Frozen, SplineSpace
+
+_set = object.__setattr__
+
+
+class Spline(Frozen):
+    """A spline function or curve, surface, volume, …: control points over one spline space a parameter.
+
+    Parameters
+    ----------
+    spaces : SplineSpace or sequence of SplineSpace
+        One space a parameter.
+    coefficients : array_like, shape (n1, …, nk) or (n1, …, nk, d)
+        Control points in d dimensions, or numbers if the spline is scalar; n1 … nk are the dimensions of the spaces.
+        If `rational`, homogeneous coordinates, shape (n1, …, nk, d + 1): the points times their weights, then the
+        weights. float64, float32, complex128 and exact objects (Fraction, mpmath) are kept as given.
+    rational : bool
+        Whether the last coordinate is a weight.
+
+    Raises
+    ------
+    PointError
+        If the counts do not fit the spaces, a number is not finite, or a weight is not positive.
+
+    Examples
+    --------
+    >>> S = SplineSpace(2, [0, 0, 0, 1, 1, 1])
+    >>> f = Spline(S, [0, 0, 1])
+    >>> float(f(0.5)), f.derivative().coefficients.tolist()
+    (0.25, [0.0, 2.0])
+    """
+
+    __slots__ = ("_points", "coefficients", "rational", "spaces")
+    spaces: tuple[SplineSpace, ...]
+    coefficients: Array
+    rational: bool
+
+    def __init__(self, spaces: SplineSpace | Sequence[SplineSpace], coefficients: Any, rational: bool = False) -> None:
+        spaces = (spaces,) if isinstance(spaces, SplineSpace) else tuple(spaces)
+        if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
+            raise KnotError(f"spaces {spaces!r} given; expected one SplineSpace a parameter")
+        given = numbers(coefficients, "coefficients", PointError)
+        counts = tuple(space.dimension for space in spaces)
+        k = len(counts)
+        if given.ndim not in (k, k + 1) or given.shape[:k] != counts:
+            wanted = ", ".join(map(str, counts))
+            raise PointError(
+                f"coefficients of shape {given.shape} given; the spaces of dimension {wanted} take shape "
+                f"({wanted}{',' if k == 1 else ''}) or ({wanted}, d)"
+            )
+        if given.ndim == k + 1 and given.shape[k] == (1 if rational else 0):
+            raise PointError(f"coefficients of shape {given.shape} given: the points have no coordinates")
+        require_finite(given, "coefficients", PointError)
+        if rational:
+            if given.ndim == k or given.dtype.kind == "c":
+                raise PointError("a rational spline takes real homogeneous coordinates: the last one is the weight")
+            _require_positive(given[..., -1])
+        if given.dtype == object or any(space.exact for space in spaces):
+            given = given if given.dtype == object else exact(given, "coefficients", PointError)
+            spaces = tuple(space.in_exact_arithmetic() for space in spaces)
+        if given is coefficients or not given.flags.owndata:
+            given = given.copy()
+        self._fill(spaces, given, bool(rational))
+
+    def _fill(self, spaces: tuple[SplineSpace, ...], coefficients: Array, rational: bool) -> None:
+        coefficients.setflags(write=False)
+        _set(self, "spaces", spaces)
+        _set(self, "coefficients", coefficients)
+        _set(self, "rational", rational)
+        _set(self, "_points", None)
+
+    @classmethod
+    def trusted(cls, spaces: tuple[SplineSpace, ...], coefficients: Array, rational: bool = False) -> Self:
+        """Return a spline of parts already known to fit; the C-ordered array is frozen, not copied."""
+        self = cls.__new__(cls)
+        self._fill(spaces, coefficients, rational)
+        return self
+
+    def with_axis(self, axis: int, space: SplineSpace, coefficients: Array) -> Self:
+        """Return the spline with another space on one axis and coefficients to match (trusted)."""
+        spaces = (*self.spaces[:axis], space, *self.spaces[axis + 1 :])
+        return self.trusted(spaces, coefficients, self.rational)
+
+    # ---- what a spline is ---------------------------------------------------------------------------------------
+
+    @property
+    def parameters(self) -> int:
+        """The number of parameters: 1 for a curve, 2 for a surface, 3 for a volume."""
+        return len(self.spaces)
+
+    @property
+    def space(self) -> SplineSpace:
+        """The space of a spline of one parameter."""
+        if len(self.spaces) != 1:
+            raise ParameterError(f"a spline of {len(self.spaces)} parameters has no single space; see .spaces")
+        return self.spaces[0]
+
+    @property
+    def degree(self) -> tuple[int, ...]:
+        """The degree in each parameter."""
+        return tuple(space.degree for space in self.spaces)
+
+    @property
+    def scalar(self) -> bool:
+        """Whether the values are numbers, not points."""
+        return self.coefficients.ndim == len(self.spaces)
+
+    @property
+    def dim(self) -> int:
+        """The number of coordinates of a point; 1 for a scalar spline."""
+        return 1 if self.scalar else self.coefficients.shape[-1] - self.rational
+
+    @property
+    def points(self) -> Array:
+        """The control points, plain: never multiplied by their weights. Shape (n1, …, nk, d), or (n1, …, nk) if scalar."""
+        if not self.rational:
+            return self.coefficients
+        if self._points is None:
+            plain = self.coefficients[..., :-1] / self.coefficients[..., -1:]
+            plain.setflags(write=False)
+            _set(self, "_points", plain)
+        return self._points  # type: ignore[no-any-return]
+
+    @property
+    def weights(self) -> Array | None:
+        """The weights, shape (n1, …, nk); None for a polynomial spline."""
+        return self.coefficients[..., -1] if self.rational else None
+
+    @property
+    def homogeneous(self) -> Array:
+        """The control points in homogeneous coordinates, shape (n1, …, nk, d + 1): points times weights, then weights."""
+        if self.rational:
+            return self.coefficients
+        points = self.coefficients[..., None] if self.scalar else self.coefficients
+        ones = np.ones((*points.shape[:-1], 1), points.dtype)
+        if points.dtype == object:
+            ones = exact(ones, "weights", PointError)
+        return np.concatenate([points, ones], axis=-1)
+
+    @property
+    def bounds(self) -> Array:
+        """A box that holds the spline, shape (2, d): the smallest and largest coordinate of the control points."""
+        points = self.points.reshape(-1, self.dim)
+        if points.dtype.kind == "c":
+            raise PointError("complex points have no order, so no bounds")
+        return np.stack([points.min(axis=0), points.max(axis=0)])
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Spline):
+            return NotImplemented
+        return (
+            self.spaces == other.spaces
+            and self.rational == other.rational
+            and self.coefficients.shape == other.coefficients.shape
+            and bool(np.all(self.coefficients == other.coefficients))
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.spaces, self.rational, *self.coefficients.reshape(-1).tolist()))
+
+    def __repr__(self) -> str:
+        kind = {1: "curve", 2: "surface", 3: "volume"}.get(len(self.spaces), f"{len(self.spaces)}-parameter spline")
+        counts = " × ".join(str(space.dimension) for space in self.spaces)
+        values = "numbers" if self.scalar else f"points in {self.dim}-D"
+        marks = [f"degree {' × '.join(map(str, self.degree))}", "rational" if self.rational else ""]
+        if any(space.periodic for space in self.spaces):
+            marks.append("periodic" if len(self.spaces) == 1 else f"periodic {[s.periodic for s in self.spaces]}")
+        if self.coefficients.dtype != np.float64:
+            marks.append("exact" if self.coefficients.dtype == object else str(self.coefficients.dtype))
+        return f"<{kind} of {counts} {values}, {', '.join(filter(None, marks))}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (type(self), self.spaces, self.coefficients, self.rational)
+
+    # ---- values -------------------------------------------------------------------------------------------------
+
+    def __call__(self, *u: Any, grid: bool = False, extrapolate: bool = False) -> Any:
+        """Return the value at parameters.
+
+        Parameters
+        ----------
+        *u : array_like
+            One number or array a parameter; arrays broadcast against each other.
+        grid : bool
+            Evaluate at all combinations of flat arrays u, v, …: the result has shape (len(u), len(v), …, d).
+        extrapolate : bool
+            Outside the domain, continue the first and last polynomial pieces; without it that is an error.
+            Periodic parameters wrap around instead.
+
+        Returns
+        -------
+        ndarray, shape (*broadcast shape, d), without d for scalar splines
+            The right end of the domain belongs to it; at a jump inside, the value is that from the right.
+        """
+        self._require_count(u)
+        orders = (0,) * len(u)
+        x = [parameters(space, values, extrapolate) for space, values in zip(self.spaces, u, strict=True)]
+        values = (self._on_grid if grid else self._scattered)(x, orders)[(0,) * len(u)]
+        return _plain(values) if self.rational else values
+
+    def derivatives(self, *u_and_order: Any, grid: bool = False, extrapolate: bool = False) -> Array:
+        """Return all derivatives up to an order: ``curve.derivatives(u, order)``, ``surface.derivatives(u, v, order)``.
+
+        Parameters
+        ----------
+        *u_and_order
+            The parameters as in a call, then the highest order of derivative in each parameter.
+        grid, extrapolate : bool
+            As in a call.
+
+        Returns
+        -------
+        ndarray, shape (order + 1, …, *broadcast shape, d)
+            ``[i]`` is the i-th derivative of a curve, ``[i, j]`` the derivative ∂ᵢᵤ∂ⱼᵥ of a surface. Rational splines
+            are differentiated by the quotient rule. At a knot, the derivative from the right.
+        """
+        *u, order = u_and_order
+        self._require_count(u)
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
+            raise ParameterError(f"order of derivative {order!r} given; expected an integer of at least 0")
+        x = [parameters(space, values, extrapolate) for space, values in zip(self.spaces, u, strict=True)]
+        found = (self._on_grid if grid else self._scattered)(x, (int(order),) * len(u))
+        return quotient_rule(found, len(u)) if self.rational else found
+
+    def _require_count(self, u: Sequence[Any]) -> None:
+        if len(u) != len(self.spaces):
+            raise ParameterError(f"{len(u)} parameters given; this spline has {len(self.spaces)}")
+
+    def _scattered(self, x: list[Array], orders: tuple[int, ...]) -> Array:
+        """Return coefficients' derivatives at points with broadcast parameters, a chunk at a time."""
+        k = len(x)
+        try:
+            wide = np.broadcast_arrays(*x) if k > 1 else x
+        except ValueError:
+            raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
+        shape, count = wide[0].shape, wide[0].size
+        flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
+        tail = self.coefficients.shape[k:]
+        B = self._width
+        dtype = self.coefficients.dtype
+        out = empty((*(r + 1 for r in orders), count, B), dtype)
+        bases = [Basis(space, count) for space in self.spaces]
+        P = self._padded().reshape(-1, B)
+        strides = self._padded_strides()
+        D = extent(B)
+        offset = _outer_sum([np.arange(space.order) * s for space, s in zip(self.spaces, strides, strict=True)])
+        for lo in range(0, count, CHUNK):
+            part = slice(lo, lo + CHUNK)
+            rows = [basis.rows(v[part], r) for basis, v, r in zip(bases, flat, orders, strict=True)]
+            base = sum(first * s for (first, _), s in zip(rows, strides, strict=True))
+            for index in itertools.product(*(range(r + 1) for r in orders)):
+                w = _outer_product([E[r] for (_, E), r in zip(rows, index, strict=True)])
+                contract(base, offset, w, P, out[index][part], D)
+        return out.reshape(*out.shape[:k], *shape, *tail)
+
+    def _on_grid(self, x: list[Array], orders: tuple[int, ...]) -> Array:
+        """Return derivatives at all combinations of flat parameter arrays: one banded matrix an axis."""
+        if any(v.ndim != 1 for v in x):
+            raise ParameterError(f"grid=True takes flat arrays; parameters of shapes {[v.shape for v in x]} given")
+        rows = [Basis(s, len(v)).rows(v, r) for s, v, r in zip(self.spaces, x, orders, strict=True)]
+        shape = (*(r + 1 for r in orders), *(len(v) for v in x), *self.coefficients.shape[len(x) :])
+        out = empty(shape, self.coefficients.dtype)
+        for index in itertools.product(*(range(r + 1) for r in orders)):
+            values = self.coefficients
+            for axis, ((first, E), r) in enumerate(zip(rows, index, strict=True)):
+                values = Banded(first, E[r], self.spaces[axis].dimension).apply(values, axis)
+            out[index] = values
+        return out
+
+    @property
+    def _width(self) -> int:
+        """Numbers in one coefficient."""
+        return 1 if self.scalar else self.coefficients.shape[-1]
+
+    def _padded(self) -> Array:
+        """The coefficients with the first `degree` of each periodic axis repeated after the last."""
+        P = self.coefficients
+        for axis, space in enumerate(self.spaces):
+            if space.periodic:
+                P = np.take(P, space.wrapped(0, space.dimension + space.degree), axis=axis)
+        return P
+
+    def _padded_strides(self) -> list[int]:
+        """How many coefficients apart neighbours along each axis of `_padded` are."""
+        counts = [space.dimension + space.degree * space.periodic for space in self.spaces]
+        return [math.prod(counts[axis + 1 :]) for axis in range(len(counts))]
+
+    # ---- new splines from old -----------------------------------------------------------------------------------
+
+    def transform(self, matrix: Any, shift: Any = 0) -> Spline:
+        """Return the spline with all its points mapped by p → matrix · p + shift.
+
+        Parameters
+        ----------
+        matrix : array_like, shape (e, d), or a number
+        shift : array_like, shape (e,), or a number
+        """
+        k = len(self.spaces)
+        A = numbers(matrix, "matrix", PointError)
+        b = numbers(shift, "shift", PointError)
+        for array, name in ((A, "matrix"), (b, "shift")):
+            require_finite(array, name, PointError)
+        if self.coefficients.dtype == object:
+            A, b = (v if v.dtype == object else exact(v, "transform", PointError) for v in (A, b))
+        if A.ndim == 0:
+            A = A * np.eye(self.dim, dtype=int)
+        if A.ndim != 2 or A.shape[1] != self.dim or b.shape not in ((), (A.shape[0],)):
+            raise PointError(
+                f"matrix of shape {A.shape} and shift of shape {b.shape} given; expected ({self.dim}, {self.dim}) and "
+                f"({self.dim},), or as many rows as the new points have coordinates"
+            )
+        flat = self.coefficients.reshape(-1, self._width)
+        points, weights = (flat[:, :-1], flat[:, -1:]) if self.rational else (flat, None)
+        moved = points @ A.T + (b if weights is None else weights * b)
+        if weights is not None:
+            moved = np.concatenate([moved, weights], axis=1)
+        shape = self.coefficients.shape[:k] if self.scalar and len(A) == 1 else (*self.coefficients.shape[:k], -1)
+        result = np.ascontiguousarray(moved.reshape(shape))
+        if result.dtype != self.coefficients.dtype and result.dtype.kind == self.coefficients.dtype.kind:
+            result = result.astype(self.coefficients.dtype)
+        require_finite(result, "transformed points", PointError)
+        return Spline.trusted(self.spaces, result, self.rational)
+
+    def reverse(self, axis: int = 0) -> Spline:
+        """Return the spline run backwards in one parameter: u becomes a + b - u over the same domain [a, b]."""
+        axis = self.axis(axis)
+        space, P = self.spaces[axis], self.coefficients
+        a, b = space.domain
+        t = space.knots[::-1]
+        mirrored = np.where(t - a < b - t, b - (t - a), a + (b - t))
+        lost = (mirrored[1:] == mirrored[:-1]) & (t[1:] != t[:-1])
+        if lost.any():
+            raise KnotError(
+                f"knots that differ would coincide at {mirrored[int(np.argmax(lost))]} when reversed over [{a}, {b}]"
+            )
+        if not space.periodic:
+            return self.with_axis(axis, SplineSpace(space.degree, mirrored), np.flip(P, axis).copy())
+        seam = space.multiplicity(a)
+        mirrored = np.concatenate([np.repeat(mirrored[:1], seam - 1), mirrored[: len(t) - seam + 1]])
+        index = (seam - 2 - space.degree - np.arange(space.dimension)) % space.dimension
+        return self.with_axis(axis, SplineSpace(space.degree, mirrored, periodic=True), np.take(P, index, axis))
+
+    def axis(self, axis: int) -> int:
+        """Return `axis` as a number from 0 on, or raise if there is no such parameter."""
+        if (
+            isinstance(axis, bool)
+            or not isinstance(axis, int | np.integer)
+            or not -len(self.spaces) <= axis < len(self.spaces)
+        ):
+            raise ParameterError(f"axis {axis!r} given; this spline has parameters 0 … {len(self.spaces) - 1}")
+        return int(axis) % len(self.spaces)
+
+    def in_exact_arithmetic(self) -> Spline:
+        """Return the same spline with each float as the Fraction of the same value."""
+        if self.coefficients.dtype == object:
+            return self
+        spaces = tuple(space.in_exact_arithmetic() for space in self.spaces)
+        return Spline.trusted(spaces, exact(self.coefficients, "coefficients", PointError), self.rational)
+
+    def derivative(self, axis: int = 0, order: int = 1) -> Spline:
+        """Return the derivative in one parameter as a spline; see `knotwork.calculus.derivative`."""
+        from knotwork.calculus import derivative
+
+        return derivative(self, axis, order)
+
+    def antiderivative(self, axis: int = 0) -> Spline:
+        """Return the integral from the start of the domain as a spline; see `knotwork.calculus.antiderivative`."""
+        from knotwork.calculus import antiderivative
+
+        return antiderivative(self, axis)
+
+
+def curve(points: Any, degree: int = 3, knots: Any = None, weights: Any = None, periodic: bool = False) -> Spline:
+    """Return a spline of one parameter.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, d), or (n,) for a scalar spline
+        Control points, plain (not multiplied by weights).
+    degree : int
+    knots : array_like, optional
+        Knot vector of n + degree + 1 knots, or n + 1 if periodic (one period and its end).
+        By default evenly spaced over [0, 1], clamped unless periodic.
+    weights : array_like, shape (n,), optional
+        Positive weights; with them the curve is rational.
+    periodic : bool
+
+    Examples
+    --------
+    >>> c = curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> c(0.5).tolist()
+    [2.0, 1.5]
+    """
+    P = numbers(points, "points", PointError)
+    if P.ndim not in (1, 2):
+        raise PointError(f"points of shape {P.shape} given; a curve takes (n, d), or (n,) for numbers")
+    space = _space(degree, knots, P.shape[0], periodic, "points")
+    return _assemble((space,), P, weights)
+
+
+def surface(
+    points: Any,
+    degree: tuple[int, int] | int = (3, 3),
+    knots: tuple[Any, Any] | None = None,
+    weights: Any = None,
+    periodic: tuple[bool, bool] = (False, False),
+) -> Spline:
+    """Return a spline of two parameters.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, m, d), or (n, m) for a scalar spline
+        Control net, plain (not multiplied by weights).
+    degree : (int, int) or int
+    knots : pair of array_like, optional
+        One knot vector a parameter (either may be None); by default evenly spaced over [0, 1].
+    weights : array_like, shape (n, m), optional
+        Positive weights; with them the surface is rational.
+    periodic : (bool, bool)
+    """
+    P = numbers(points, "points", PointError)
+    if P.ndim not in (2, 3):
+        raise PointError(f"points of shape {P.shape} given; a surface takes (n, m, d), or (n, m) for numbers")
+    degrees = _pair(degree, "degree")
+    vectors = (None, None) if knots is None else _pair(knots, "knots")
+    closed = _pair(periodic, "periodic")
+    spaces = tuple(_space(degrees[i], vectors[i], P.shape[i], closed[i], f"points along axis {i}") for i in range(2))
+    return _assemble(spaces, P, weights)
+
+
+def quotient_rule(A: Array, k: int) -> Array:
+    """Return the derivatives of points from those of homogeneous coordinates, indexed by k orders.
+
+    From A = w·S: S^(α) = (A^(α) − Σ_{0 ≠ β ≤ α} C(α, β) w^(β) S^(α−β)) / w (Leibniz).
+    """
+    A, w = A[..., :-1], A[..., -1:]
+    S = empty(A.shape, A.dtype)
+    for alpha in itertools.product(*map(range, A.shape[:k])):
+        rest = A[alpha].copy()
+        for beta in itertools.product(*(range(a + 1) for a in alpha)):
+            if any(beta):
+                factor = math.prod(math.comb(a, b) for a, b in zip(alpha, beta, strict=True))
+                rest -= factor * w[beta] * S[tuple(a - b for a, b in zip(alpha, beta, strict=True))]
+        S[alpha] = rest / w[(0,) * k]
+    return S
+
+
+def _plain(homogeneous: Array) -> Array:
+    """Divide by the weight."""
+    return homogeneous[..., :-1] / homogeneous[..., -1:]
+
+
+def _outer_sum(arrays: list[Array]) -> Array:
+    total = arrays[0]
+    for a in arrays[1:]:
+        total = (total[:, None] + a).reshape(-1)
+    return total
+
+
+def _outer_product(arrays: list[Array]) -> Array:
+    """Return the tensor product of the basis values, shape (points, all combinations)."""
+    product = arrays[0]
+    for a in arrays[1:]:
+        product = (product[:, :, None] * a[:, None, :]).reshape(len(a), -1)
+    return product
+
+
+def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> SplineSpace:
+    """Return the space of `count` control points, or say which count fits."""
+    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
+        raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
+    if knots is None:
+        least = 1 if periodic else degree + 1
+        if count < least:
+            raise PointError(f"{count} {what} given; degree {degree} needs at least {least}")
+        return SplineSpace.uniform(degree, count, periodic=True) if periodic else SplineSpace.clamped(degree, count)
+    extra = 1 if periodic else degree + 1
+    t = numbers(knots, "knots", KnotError)
+    if t.ndim == 1 and len(t) != count + extra:
+        raise KnotError(f"{len(t)} knots given; {count} {what} of degree {degree} take {count + extra}")
+    return SplineSpace(degree, t, periodic=periodic)
+
+
+def _assemble(spaces: tuple[SplineSpace, ...], P: Array, weights: Any) -> Spline:
+    """Return the spline of plain points and optional weights."""
+    if weights is None:
+        return Spline(spaces, P)
+    w = numbers(weights, "weights", PointError)
+    k = len(spaces)
+    if w.shape != P.shape[:k]:
+        raise PointError(f"weights of shape {w.shape} given; points of shape {P.shape} take {P.shape[:k]}")
+    if w.dtype.kind == "c" or P.dtype.kind == "c":
+        raise PointError("complex points or weights given; a rational spline takes real ones")
+    require_finite(w, "weights", PointError)
+    _require_positive(w)
+    if object in (w.dtype, P.dtype):
+        w, P = (v if v.dtype == object else exact(v, "points", PointError) for v in (w, P))
+    points = P[..., None] if P.ndim == k else P
+    require_finite(points, "points", PointError)
+    dtype = points.dtype
+    homogeneous = np.concatenate([points * w[..., None], w[..., None]], axis=-1).astype(dtype)
+    return Spline(spaces, homogeneous, rational=True)
+
+
+def _require_positive(weights: Array) -> None:
+    bad = weights <= 0
+    if bad.any():
+        place = np.unravel_index(int(np.argmax(bad)), weights.shape)
+        raise PointError(f"weights[{', '.join(map(str, place))}] is {weights[place]}; expected positive weights")
+
+
+def _pair(value: Any, what: str) -> tuple[Any, Any]:
+    if isinstance(value, int | np.integer | bool):
+        return value, value
+    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) != 2:
+        raise ParameterError(f"{what} {value!r} given; a surface takes a pair")
+    return value[0], value[1]
+
+
+def _restore(cls: type[Spline], spaces: tuple[SplineSpace, ...], coefficients: Array, rational: bool) -> Spline:
+    return cls.trusted(spaces, coefficients, rational)
