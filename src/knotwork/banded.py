@@ -122,9 +122,9 @@ class Banded(Frozen):
         try:
             from scipy.sparse import coo_array
         except ImportError as exc:
-            from knotwork.errors import MissingExtra
+            from knotwork.errors import MissingExtraError
 
-            raise MissingExtra("tocsr() needs scipy: pip install scipy") from exc
+            raise MissingExtraError("tocsr() needs scipy: pip install scipy") from exc
         rows, width = self.entries.shape
         columns = (self.first[:, None] + np.arange(width)) % self.columns
         row = np.broadcast_to(np.arange(rows)[:, None], columns.shape)

@@ -25,5 +25,5 @@ class FileError(KnotworkError):
     """A file that cannot be read or written; the message names the file and the place in it."""
 
 
-class MissingExtra(ImportError):
+class MissingExtraError(ImportError):
     """An optional library is not installed; the message says which extra brings it."""
