@@ -1,7 +1,23 @@
-"""Knotwork: insert, delete and convert the knots of B-spline curves and surfaces."""
+"""Knotwork: insert, delete and convert the knots of B-spline curves and surfaces, exactly or with a proven bound."""
 
-from knotwork.insertion import insert, insertion_matrix
+from knotwork.conversion import elevate
+from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline, curve, surface
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Spline",
+    "SplineSpace",
+    "clamp",
+    "curve",
+    "elevate",
+    "from_bezier",
+    "insert",
+    "insertion_matrix",
+    "split",
+    "surface",
+    "to_bezier",
+    "trim",
+]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -79,6 +79,19 @@ class Banded(Frozen):
         _set(self, "first", first)
         _set(self, "entries", entries)
         _set(self, "columns", columns)
+
+    @classmethod
+    def packed(cls, first: Array, last: Array, E: Array, columns: int, wraps: bool = False) -> Self:
+        """Return the matrix with entries E[i, 0 … last[i]] from column first[i] on; what follows in E is junk.
+
+        Unless it wraps around, no row of the result reaches past the last column.
+        """
+        width = E.shape[1] if wraps else min(E.shape[1], columns)
+        shift = np.zeros_like(first) if wraps else np.maximum(first + width - columns, 0)
+        index = np.arange(width) - shift[:, None]
+        inside = (index >= 0) & (index <= last[:, None])
+        zero = E.flat[0] * 0 if E.dtype == object and E.size else 0
+        return cls(first - shift, np.where(inside, np.take_along_axis(E, np.where(inside, index, 0), 1), zero), columns)
 
     @property
     def shape(self) -> tuple[int, int]:

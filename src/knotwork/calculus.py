@@ -15,7 +15,7 @@ from knotwork.spline import Spline
 
 @kernel
 def differences(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
-    """out_i = n (P_{i+1} − P_i) / (t_{i+n+1} − t_{i+1}): the two-term derivative formula (§2.3.3), i counted from `first`."""
+    """out_i = n (P_{i+1} − P_i) / (t_{i+n+1} − t_{i+1}): the two-term derivative formula (§2.3.3)."""
     for a in range(len(P)):
         for i in range(out.shape[1]):
             width = t[first + i + n + 1] - t[first + i + 1]

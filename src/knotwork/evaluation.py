@@ -39,7 +39,7 @@ def cell_table(t, first, last, table):  # type: ignore[no-untyped-def]
 
 @kernel
 def locate(t, table, first, last, u, span):  # type: ignore[no-untyped-def]
-    """span[i] = the last q in [first, last] with t[q] <= u[i]: u lies in [t_q, t_{q+1}), at the right end in the last."""
+    """span[i] = the last q in [first, last] with t[q] <= u[i]: [t_q, t_{q+1}) holds u, or the last holds b."""
     cells = len(table) - 1
     for i in range(len(u)):
         x = u[i]
@@ -61,7 +61,7 @@ def locate(t, table, first, last, u, span):  # type: ignore[no-untyped-def]
 
 @kernel
 def basis(t, n, span, u, E):  # type: ignore[no-untyped-def]
-    """E[r, i, j] = r-th derivative at u[i] of basis function span[i]-n+j, by the recurrence of Cox, de Boor and Mansfield.
+    """E[r, i, j] = r-th derivative at u[i] of basis function span[i]-n+j (Cox, de Boor, Mansfield).
 
     The triangle is that of §2.2 read top-down: level n-r starts the derivative of order r, and the two-term
     derivative formula takes it from there to level n.

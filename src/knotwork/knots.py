@@ -99,3 +99,11 @@ def nodes(knots: Array, degree: int, count: int) -> Array:
     for j in range(2, degree + 1):
         total = total + knots[j : count + j] / degree
     return total
+
+
+def turned(knots: Array, turn: Any, start: Any, end: Any) -> Array:
+    """Return knots of the period [start, end] moved by whole periods, so that equal knots stay equal and none pass."""
+    after = end + ((knots - start) + (turn - 1) * (end - start))
+    before = start - ((end - knots) + (-turn - 1) * (end - start))
+    moved: Array = np.where(turn == 0, knots, np.where(turn > 0, after, before))
+    return moved

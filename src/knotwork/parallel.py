@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -34,7 +35,7 @@ def in_parts(work: Callable[[int, int], None], count: int, size: int) -> None:
         work(0, count)
         return
     edges = [count * i // parts for i in range(parts + 1)]
-    jobs = [_pool(parts - 1).submit(work, lo, hi) for lo, hi in zip(edges[1:-1], edges[2:], strict=True)]
+    jobs = [_pool(parts - 1).submit(work, lo, hi) for lo, hi in itertools.pairwise(edges[1:])]
     work(edges[0], edges[1])
     for job in jobs:
         job.result()

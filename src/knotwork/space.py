@@ -18,6 +18,7 @@ from knotwork.knots import (
     nodes,
     require_multiplicity,
     sorted_knots,
+    turned,
 )
 from knotwork.numbers import Array, empty, exact, numbers
 
@@ -111,7 +112,7 @@ class SplineSpace(Frozen):
 
     @classmethod
     def clamped(cls, degree: int, n: int) -> Self:
-        """Return the space of dimension `n` over [0, 1] with evenly spaced interior knots and ends of full multiplicity."""
+        """Return the space of dimension `n` over [0, 1] with even interior knots and clamped ends."""
         _require_dimension(degree, n, degree + 1)
         inner = _even(n - degree)
         return cls(degree, np.concatenate([np.zeros(degree), inner, np.ones(degree)]))
@@ -129,7 +130,7 @@ class SplineSpace(Frozen):
 
     @classmethod
     def bezier(cls, degree: int, breaks: Any) -> Self:
-        """Return the space of continuous pieces over increasing `breaks`: the ends `degree + 1` times, the others `degree`.
+        """Return the space of continuous pieces over `breaks`: ends `degree + 1` times, the others `degree`.
 
         For degree 0 the pieces jump.
         """
@@ -166,7 +167,7 @@ class SplineSpace(Frozen):
 
     @property
     def nodes(self) -> Array:
-        """The Greville abscissae, one for each control point; a periodic space's last ones pass the end of the period."""
+        """The Greville abscissae, one a control point; a periodic space's last ones pass its end."""
         t, first = self.unrolled
         return nodes(t[first:], self.degree, self.dimension)
 
@@ -195,16 +196,12 @@ class SplineSpace(Frozen):
         return self.cached("unrolled", lambda: (self._turns(-self.order, self.dimension + 2 * self.order), self.order))
 
     def _turns(self, lo: int, hi: int) -> Array:
-        """Return knots lo … hi of the periodic sequence, t[i + dimension] = t[i] + period, nondecreasing in floats too."""
+        """Return knots lo … hi of the periodic sequence: t[i + dimension] = t[i] + period."""
         t, n = self.knots, self.dimension
         turn, index = np.divmod(np.arange(lo, hi + 1), n)
         if self.exact:
             turn = turn.astype(object)
-        start, end = t[0], t[-1]
-        after = end + ((t[index] - start) + (turn - 1) * (end - start))
-        before = start - ((end - t[index]) + (-turn - 1) * (end - start))
-        unrolled: Array = np.where(turn == 0, t[index], np.where(turn > 0, after, before))
-        return unrolled
+        return turned(t[index], turn, t[0], t[-1])
 
     def wrapped(self, first: int, count: int) -> Array:
         """Return the indices of the control points `first` … `first + count - 1`, taken around the period."""

@@ -128,7 +128,7 @@ class Spline(Frozen):
 
     @property
     def points(self) -> Array:
-        """The control points, plain: never multiplied by their weights. Shape (n1, …, nk, d), or (n1, …, nk) if scalar."""
+        """The control points, never multiplied by weights; shape (n1, …, nk, d), or (n1, …, nk) if scalar."""
         if not self.rational:
             return self.coefficients
         if self._points is None:
@@ -144,7 +144,7 @@ class Spline(Frozen):
 
     @property
     def homogeneous(self) -> Array:
-        """The control points in homogeneous coordinates, shape (n1, …, nk, d + 1): points times weights, then weights."""
+        """Homogeneous coordinates, shape (n1, …, nk, d + 1): points times weights, then weights."""
         if self.rational:
             return self.coefficients
         points = self.coefficients[..., None] if self.scalar else self.coefficients

@@ -12,7 +12,7 @@ from knotwork.errors import KnotError
 from knotwork.insertion.boehm import boehm
 from knotwork.insertion.merge import refined, rows_of_matrix
 from knotwork.kernel import extent
-from knotwork.knots import combine
+from knotwork.knots import combine, turned
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -98,12 +98,8 @@ def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int
     a, b = space.domain
     if not len(new):
         return t, new, len(t), left, left
-    turns = [new]
-    while turns[0][0] > t[0]:
-        turns.insert(0, a - (b - turns[0]))
-    while turns[-1][-1] < t[-1]:
-        turns.append(b + (turns[-1] - a))
-    W = np.concatenate(turns)
+    turns = range(-1 - left // space.dimension, 2 + len(t) // space.dimension)
+    W = np.concatenate([turned(new, np.array(turn), a, b) for turn in turns])
     W = W[(t[0] <= W) & (t[-1] >= W)]
     return t, W, len(t), left + int(np.searchsorted(W, a, "left")), left
 
@@ -130,17 +126,10 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace) -> Banded:
     n = space.degree
     if not space.periodic:
         start, count, E = rows_of_matrix(space.knots, new, space.dimension, n, 0, refined.dimension)
-        # move the short rows left, so that no row reaches past the last column
-        shift = np.maximum(start + n + 1 - space.dimension, 0)
-        first = start - shift
-    else:
-        t, W, stop, lo, left = _around(space, new)
-        start, count, E = rows_of_matrix(t, W, stop, n, lo, refined.dimension)
-        first, shift = (start - left) % space.dimension, np.zeros_like(start)
-    columns = np.arange(n + 1) - shift[:, None]
-    inside = (columns >= 0) & (columns <= count[:, None])
-    entries = np.where(inside, np.take_along_axis(E, np.where(inside, columns, 0), 1), _zero(E))
-    return Banded(first, entries, space.dimension)
+        return Banded.packed(start, count, E, space.dimension)
+    t, W, stop, lo, left = _around(space, new)
+    start, count, E = rows_of_matrix(t, W, stop, n, lo, refined.dimension)
+    return Banded.packed((start - left) % space.dimension, count, E, space.dimension, wraps=True)
 
 
 def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:
@@ -154,7 +143,3 @@ def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:
     if len(new) and (new[0] < a or new[-1] > b):
         raise KnotError(f"{refined!r} has new knots outside the domain [{a}, {b}]")
     return new
-
-
-def _zero(E: Array) -> Any:
-    return E.flat[0] * 0 if E.dtype == object and E.size else 0

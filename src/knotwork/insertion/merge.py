@@ -21,7 +21,7 @@ BLOCK = 64
 
 @kernel
 def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
-    """Return how many of the first `count` merged knots are old; equal knots: old ones first, but new before U[stop]."""
+    """Return how many of the first `count` merged knots are old; of equals old first, but new before U[stop]."""
     lo, hi = max(0, count - len(W)), min(count, len(U))
     while lo < hi:
         j = (lo + hi) // 2
@@ -87,7 +87,7 @@ def insertion_rows(U, W, stop, n, lo, start, new, E):  # type: ignore[no-untyped
 
 @kernel
 def refine(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-untyped-def]
-    """out[a, i] = refined control point lo + i, a block of rows at a time; `start`, `new` and E are room for a block."""
+    """out[a, i] = refined control point lo + i, a block of rows at a time (start, new, E: room for it)."""
     for top in range(0, out.shape[1], len(start)):
         count = min(len(start), out.shape[1] - top)
         insertion_rows(U, W, stop, n, lo + top, start[:count], new, E)

@@ -1,0 +1,223 @@
+"""What insertion to full multiplicity gives: splitting, trimming, clamping, Bézier pieces and back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.calculus import as_blocks
+from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.insertion.insert import refine_to
+from knotwork.knots import distinct, new_knots, sorted_knots
+from knotwork.numbers import Array, exact, numbers
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+
+def clamp(spline: Spline) -> Spline:
+    """Return the same spline with ends of full multiplicity in every parameter; a periodic one is opened at the seam.
+
+    Control points at the ends are then points of the spline, and knots outside the domain are gone.
+    """
+    for axis, space in enumerate(spline.spaces):
+        spline = _restrict(spline, axis, *space.domain)
+    return spline
+
+
+def split(spline: Spline, u: Any, axis: int = 0) -> tuple[Spline, Spline]:
+    """Return the parts of a spline before and after a parameter value, each clamped where they meet.
+
+    Parameters are not re-scaled: the parts are defined over [a, u] and [u, b]. A periodic spline is cut at the seam
+    and at u.
+
+    Raises
+    ------
+    ParameterError
+        If u is not strictly inside the domain.
+    """
+    axis = spline.axis(axis)
+    a, b = spline.spaces[axis].domain
+    x = _inside(spline.spaces[axis], u)
+    if not a < x < b:
+        raise ParameterError(f"split at {u}: expected a parameter strictly inside the domain [{a}, {b}]")
+    return _restrict(spline, axis, a, x, keep_start=True), _restrict(spline, axis, x, b, keep_end=True)
+
+
+def trim(spline: Spline, a: Any, b: Any, axis: int = 0) -> Spline:
+    """Return the part of a spline over [a, b], clamped at both ends; parameters are not re-scaled.
+
+    A periodic spline may be trimmed across its seam: b may reach up to one period beyond a.
+
+    Raises
+    ------
+    ParameterError
+        If a < b does not hold or the part is not inside the domain.
+    """
+    axis = spline.axis(axis)
+    space = spline.spaces[axis]
+    start, end = space.domain
+    ends = numbers([a, b], "ends", ParameterError)
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise ParameterError(f"trim from {a} to {b}: expected two numbers, the first below the second")
+    if space.periodic and end < ends[1] <= ends[0] + (end - start) and start <= ends[0] < end:
+        spline = _two_turns(spline, axis)
+        space = spline.spaces[axis]
+    x, y = (_inside(space, v) for v in (a, b))
+    return _restrict(spline, axis, x, y, keep_start=not space.periodic, keep_end=not space.periodic)
+
+
+def to_bezier(spline: Spline) -> tuple[Array, Any]:
+    """Return the Bézier nets of all polynomial pieces, and the breaks between them.
+
+    Returns
+    -------
+    nets : ndarray
+        Shape (m, n + 1, d) for a curve of m pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, and so on; no d for a
+        scalar spline. Homogeneous coordinates (points times weights, weights) if the spline is rational.
+    breaks : ndarray, shape (m + 1,), or a tuple of them, one a parameter
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([0, 1, 3, 4], degree=2, knots=[0, 0, 0, 1, 2, 2, 2])
+    >>> nets, breaks = kw.to_bezier(c)
+    >>> nets.tolist(), breaks.tolist()
+    ([[0.0, 1.0, 2.0], [2.0, 3.0, 4.0]], [0.0, 1.0, 2.0])
+    """
+    k = len(spline.spaces)
+    nets, breaks = spline, []
+    for axis, space in enumerate(spline.spaces):
+        breaks.append(space.breaks)
+        nets = _in_pieces(nets, axis)
+    counts = [n for x, space in zip(breaks, spline.spaces, strict=True) for n in (len(x) - 1, space.order)]
+    split_axes = nets.coefficients.reshape(*counts, *nets.coefficients.shape[k:])
+    order = [*range(0, 2 * k, 2), *range(1, 2 * k, 2), *range(2 * k, split_axes.ndim)]
+    return np.ascontiguousarray(split_axes.transpose(order)), breaks[0] if k == 1 else tuple(breaks)
+
+
+def from_bezier(nets: Any, breaks: Any, rational: bool = False) -> Spline:
+    """Return the spline of Bézier nets over breaks: the inverse of `to_bezier`.
+
+    Parameters
+    ----------
+    nets : array_like
+        As `to_bezier` returns them.
+    breaks : array_like or tuple of array_like
+        Increasing; one array a parameter.
+    rational : bool
+        Whether the nets are homogeneous, the last coordinate the weight.
+
+    Notes
+    -----
+    Where all neighbouring nets share their end points exactly, a break gets multiplicity degree, otherwise degree + 1.
+    Smoother joins are not looked for.
+    """
+    P = numbers(nets, "nets", PointError)
+    given = breaks if isinstance(breaks, tuple) else (breaks,)
+    vectors = [sorted_knots(x, "breaks") for x in given]
+    k = len(vectors)
+    if P.ndim not in (2 * k, 2 * k + 1):
+        raise PointError(f"nets of shape {P.shape} given; {k} vectors of breaks take {2 * k} or {2 * k + 1} axes")
+    for axis, x in enumerate(vectors):
+        if len(x) < 2 or (x[1:] == x[:-1]).any():
+            raise KnotError(f"breaks: {len(distinct(x)[0])} distinct of {len(x)} given; expected two or more")
+        if P.shape[axis] != len(x) - 1:
+            raise PointError(f"{P.shape[axis]} nets along axis {axis} given; {len(x)} breaks take {len(x) - 1}")
+    if object in (P.dtype, *(x.dtype for x in vectors)):
+        P, *vectors = (v if v.dtype == object else exact(v, "nets", PointError) for v in (P, *vectors))
+    order = [i for axis in range(k) for i in (axis, k + axis)]
+    pairs = P.transpose(*order, *range(2 * k, P.ndim))
+    shape = [pairs.shape[2 * axis] * pairs.shape[2 * axis + 1] for axis in range(k)]
+    coefficients = np.ascontiguousarray(pairs).reshape(*shape, *P.shape[2 * k :])
+    spaces = []
+    for axis, x in enumerate(vectors):
+        n = P.shape[k + axis] - 1
+        ends = np.arange(1, len(x) - 1) * (n + 1)
+        blocks = np.moveaxis(coefficients, axis, 0)
+        same = blocks[ends - 1] == blocks[ends]
+        joined = same.all(axis=tuple(range(1, same.ndim))) & (n > 0)
+        coefficients = np.delete(coefficients, ends[joined], axis)
+        counts = np.concatenate([[n + 1], n + 1 - joined, [n + 1]]).astype(int)
+        spaces.append(SplineSpace(n, np.repeat(x, counts)))
+    return Spline(spaces, coefficients, rational)
+
+
+def _inside(space: SplineSpace, u: Any) -> Any:
+    """Return one parameter value in the arithmetic of the space, or raise if it is outside the domain."""
+    try:
+        x = new_knots(u, space.knots, space.domain)
+    except KnotError as exc:
+        raise ParameterError(str(exc).replace("knot", "parameter")) from None
+    if len(x) != 1:
+        raise ParameterError(f"{len(x)} parameters given; expected one")
+    return x[0]
+
+
+def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = False, keep_end: bool = False) -> Spline:
+    """Return the part over [a, b], clamped at a and b; an end of the domain may be kept as it is."""
+    space = spline.spaces[axis]
+    start, end = space.domain
+    keep_start &= bool(a == start) and not space.periodic
+    keep_end &= bool(b == end) and not space.periodic
+    opened = _opened(spline, axis) if space.periodic else spline
+    space = opened.spaces[axis]
+    n, t = space.degree, space.knots
+    missing = [
+        np.repeat(np.asarray([x], t.dtype), max(0, n + 1 - space.multiplicity(x)))
+        for x, keep in ((a, keep_start), (b, keep_end))
+        if not keep
+    ]
+    new = np.concatenate(missing) if missing else t[:0]
+    full = _insert_anywhere(opened, axis, new)
+    t = full.spaces[axis].knots
+    lo = 0 if keep_start else int(np.searchsorted(t, a, "left"))
+    hi = len(t) if keep_end else int(np.searchsorted(t, b, "right"))
+    P = as_blocks(full.coefficients, axis)[:, lo : hi - n - 1]
+    shape = full.coefficients.shape
+    return full.with_axis(
+        axis,
+        SplineSpace.trusted(n, t[lo:hi].copy()),
+        np.array(P.reshape(*shape[:axis], hi - n - 1 - lo, *shape[axis + 1 :])),
+    )
+
+
+def _insert_anywhere(spline: Spline, axis: int, new: Array) -> Spline:
+    """Insert sorted knots of the domain that are known to fit."""
+    if not len(new):
+        return spline
+    space = spline.spaces[axis]
+    merged = np.sort(np.concatenate([space.knots, new]), kind="stable")
+    return refine_to(spline, axis, SplineSpace.trusted(space.degree, merged), new)
+
+
+def _opened(spline: Spline, axis: int) -> Spline:
+    """Return a periodic spline over one period as an ordinary one: its knots continue beyond both ends."""
+    space = spline.spaces[axis]
+    n = space.degree
+    t, zero = space.unrolled
+    knots = t[zero - n : zero + space.dimension + n + 1].copy()
+    P = np.take(spline.coefficients, space.wrapped(-n, space.dimension + n), axis)
+    return spline.with_axis(axis, SplineSpace.trusted(n, knots), P)
+
+
+def _two_turns(spline: Spline, axis: int) -> Spline:
+    """Return a periodic spline as one whose period is two of its turns."""
+    space = spline.spaces[axis]
+    t = space.knots
+    second = t[-1] + (t[1:] - t[0])
+    knots = np.concatenate([t[:-1], t[-1:], second])
+    coefficients = np.concatenate([spline.coefficients] * 2, axis)
+    return spline.with_axis(axis, SplineSpace.trusted(space.degree, knots, True), coefficients)
+
+
+def _in_pieces(spline: Spline, axis: int) -> Spline:
+    """Return the spline with every break of multiplicity degree + 1, clamped."""
+    space = spline.spaces[axis]
+    a, b = space.domain
+    opened = _opened(spline, axis) if space.periodic else spline
+    space = opened.spaces[axis]
+    n, t = space.degree, space.knots
+    values, counts = distinct(t[(t >= a) & (t <= b)])
+    new = np.repeat(values, n + 1 - counts)
+    return _restrict(_insert_anywhere(opened, axis, new), axis, a, b)
