@@ -109,7 +109,14 @@ def _draw(
         net = _joined(_polylines(_control(s)) for s in splines)
         size = _size(splines, 5)
         ax.plot(
-            *net.T, "-o", color=NET, linewidth=0.8, markersize=size, markerfacecolor="white", markeredgewidth=0.7, zorder=3
+            *net.T,
+            "-o",
+            color=NET,
+            linewidth=0.8,
+            markersize=size,
+            markerfacecolor="white",
+            markeredgewidth=0.7,
+            zorder=3,
         )
     curves, surfaces = ([s for s in splines if s.parameters == k] for k in (1, 2))
     if curves:
@@ -191,7 +198,9 @@ def _shaded(P: Array) -> Array:
     normal = np.cross(P[1:, :-1] - P[:-1, :-1], P[:-1, 1:] - P[:-1, :-1])
     length = np.linalg.norm(normal, axis=-1)
     facing = np.abs(normal @ LIGHT) / np.where(length > 0, length, 1)
-    return np.concatenate([np.outer(0.72 + 0.28 * facing, FACE).reshape(*facing.shape, 3), facing[..., None] * 0 + 1], -1)
+    return np.concatenate(
+        [np.outer(0.72 + 0.28 * facing, FACE).reshape(*facing.shape, 3), facing[..., None] * 0 + 1], -1
+    )
 
 
 def _along(curve: Spline, samples: int) -> Array:
