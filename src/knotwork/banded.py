@@ -98,6 +98,11 @@ class Banded(Frozen):
         """Rows, columns."""
         return len(self.first), self.columns
 
+    @property
+    def wraps(self) -> bool:
+        """Whether some row reaches past the last column, on to the first."""
+        return len(self.first) > 0 and int(self.first.max()) + self.entries.shape[1] > self.columns
+
     def __repr__(self) -> str:
         return f"Banded({self.shape[0]} × {self.shape[1]}, {self.entries.shape[1]} a row)"
 
@@ -114,7 +119,7 @@ class Banded(Frozen):
         B = int(np.prod(shape[axis + 1 :], dtype=np.int64))
         P = array.reshape(-1 if B else 0, shape[axis], B) if B else array.reshape(0, shape[axis], 0)
         width = self.entries.shape[1]
-        if len(self.first) and int(self.first.max()) + width > self.columns:
+        if self.wraps:
             P = np.ascontiguousarray(P[:, np.arange(self.columns + width - 1) % self.columns])
         dtype = object if self.entries.dtype == object else P.dtype
         out = empty((len(P), len(self.first), B), dtype)

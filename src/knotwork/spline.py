@@ -485,6 +485,7 @@ def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> Sp
     """Return the space of `count` control points, or say which count fits."""
     if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
         raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
+    degree = int(degree)
     if knots is None:
         least = 1 if periodic else degree + 1
         if count < least:

@@ -122,7 +122,11 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace) -> Banded:
     KnotError
         If `refined` is not a refinement of `space`.
     """
-    new = missing_knots(space, refined)
+    return matrix_to(space, refined, missing_knots(space, refined))
+
+
+def matrix_to(space: SplineSpace, refined: SplineSpace, new: Array) -> Banded:
+    """Return the insertion matrix to `refined`, which has the sorted knots `new` in addition (trusted)."""
     n = space.degree
     if not space.periodic:
         start, count, E = rows_of_matrix(space.knots, new, space.dimension, n, 0, refined.dimension)

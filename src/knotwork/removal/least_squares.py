@@ -1,0 +1,107 @@
+"""Banded weighted least squares without square roots, so that it is exact in exact arithmetic."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from knotwork.banded import Banded
+from knotwork.kernel import kernel
+from knotwork.numbers import Array
+
+
+@kernel
+def triangularise(first, X, weight, y, R, D, z, x, p):  # type: ignore[no-untyped-def]
+    """Bring the rows √weight·(X | y), with entries from column first[i] on, to triangular form √D·(R | z).
+
+    Givens rotations without square roots (Gentleman 1973). `first` does not decrease, so R is as narrow as X; its
+    unit diagonal is not stored. x and p: room for one row.
+    """
+    band = X.shape[1]
+    for i in range(len(first)):
+        w = weight[i]
+        for r in range(band):
+            x[r] = X[i, r]
+        for c in range(len(p)):
+            p[c] = y[i, c]
+        for r in range(band):
+            k = first[i] + r
+            xk = x[r]
+            if w == 0 or xk == 0:
+                continue
+            d = D[k] + w * xk * xk
+            keep, mix = D[k] / d, w * xk / d
+            D[k] = d
+            w = w * keep
+            for q in range(r + 1, band):
+                xq = x[q]
+                x[q] = xq - xk * R[k, q - r]
+                R[k, q - r] = keep * R[k, q - r] + mix * xq
+            for c in range(len(p)):
+                pc = p[c]
+                p[c] = pc - xk * z[k, c]
+                z[k, c] = keep * z[k, c] + mix * pc
+
+
+@kernel
+def back_substitute(R, z):  # type: ignore[no-untyped-def]
+    """Solve R·c = z in place of z, R unit upper triangular and banded."""
+    for k in range(len(z) - 1, -1, -1):
+        for q in range(1, min(R.shape[1], len(z) - k)):
+            for c in range(z.shape[1]):
+                z[k, c] = z[k, c] - R[k, q] * z[k + q, c]
+
+
+def least_squares(A: Banded, weight: Array, d: Array, pinned: tuple[int, ...] = ()) -> Array:
+    """Return the c that minimises Σ weight_i |(A c − d)_i|²; `pinned` columns take the first and last row of d instead.
+
+    Parameters
+    ----------
+    A : Banded, shape (N, n)
+    weight : ndarray, shape (N,)
+    d : ndarray, shape (N, dim)
+    pinned : tuple of int
+        0 or n - 1, or both: there c is d[0], d[N - 1].
+
+    Returns
+    -------
+    ndarray, shape (n, dim)
+    """
+    columns = A.columns
+    first, X = _in_order(A)
+    y = d
+    z = np.zeros((columns, d.shape[1]), d.dtype)
+    if pinned:
+        X, y = X.copy(), d.copy()
+        index = first[:, None] + np.arange(X.shape[1])
+        for column in pinned:
+            fixed = d[0] if column == 0 else d[-1]
+            rows, place = np.nonzero(index == column)
+            y[rows] -= X[rows, place][:, None] * fixed
+            X[rows, place] = 0 * X[rows, place]
+            z[column] = fixed
+    order = np.argsort(first, kind="stable") if (first[1:] < first[:-1]).any() else slice(None)
+    band = X.shape[1]
+    R, D = np.zeros((columns, band), X.dtype), np.zeros(columns, X.dtype)
+    triangularise(first[order], X[order], weight[order], y[order], R, D, z, np.empty(band, X.dtype), z[0].copy())
+    back_substitute(R, z)
+    return _out_of_order(z) if A.wraps else z
+
+
+def _in_order(A: Banded) -> tuple[Array, Array]:
+    """Return the rows of a matrix that wraps around with its columns folded: 0, n-1, 1, n-2, …, banded again."""
+    if not A.wraps:
+        return A.first, A.entries
+    n, width = A.columns, A.entries.shape[1]
+    column = (A.first[:, None] + np.arange(width)) % n
+    folded = np.where(2 * column < n, 2 * column, 2 * (n - 1 - column) + 1)
+    band = min(2 * width, n)
+    first = np.minimum(folded.min(axis=1), n - band)
+    X = np.zeros((len(first), band), A.entries.dtype)
+    np.add.at(X, (np.arange(len(first))[:, None], folded - first[:, None]), A.entries)
+    return first, X
+
+
+def _out_of_order(z: Array) -> Array:
+    """Undo the folding of columns."""
+    column = np.arange(len(z))
+    return z[np.where(2 * column < len(z), 2 * column, 2 * (len(z) - 1 - column) + 1)]

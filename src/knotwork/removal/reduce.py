@@ -1,0 +1,325 @@
+"""Knot removal within a tolerance: the data reduction of Lyche and Mørken.
+
+Rank the knots, take out as many as the tolerance admits in one step (a search over how many, each trial a weighted
+least-squares fit of the original on the knots left), rank what is left, and go on until nothing more goes. Every
+trial is measured against the original, so errors do not add up unseen.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.calculus import as_blocks
+from knotwork.errors import ParameterError
+from knotwork.insertion.insert import matrix_to, refine_to
+from knotwork.knots import distinct
+from knotwork.numbers import Array, numbers, require_finite
+from knotwork.removal.least_squares import least_squares
+from knotwork.removal.ranking import ranked
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+#: knots tried one by one when the search over how many finds nothing more
+SINGLES = 16
+
+Progress = Callable[[float], None]
+
+
+class Removal(NamedTuple):
+    """The result of `remove`."""
+
+    spline: Spline
+    #: the knots that were removed, sorted
+    removed: Array
+    #: what the removal changed at most: a number, or one a component if the tolerance was given so
+    bound: Any
+
+
+class Reduction(NamedTuple):
+    """The result of `reduce`."""
+
+    spline: Spline
+    #: what the reduction changed at most: a number, or one a component if the tolerance was given so
+    bound: Any
+    #: the knots that were removed, sorted
+    removed: Array
+
+
+def remove(spline: Spline, knots: Any, axis: int = 0, tolerance: Any = 0.0) -> Removal:
+    """Remove as many of the given knots as the tolerance admits in total.
+
+    Parameters
+    ----------
+    spline : Spline
+    knots : number or array_like
+        Knots to remove; repeats ask for several copies.
+    axis : int
+        Which parameter of a surface or volume; all its rows are decided together.
+    tolerance : float or array_like, shape (d,)
+        Largest change allowed, in the units of the points, for every component or for each one. It compares equal
+        parameters and holds for the result as a whole, not for each knot. In float arithmetic a tolerance below the
+        rounding error of the control points counts as that error, 8 (degree + 1) ε max |coordinate|, so that 0
+        removes what is removable; in exact arithmetic 0 is 0.
+
+    Returns
+    -------
+    Removal
+        ``spline``, ``removed`` and ``bound``: the largest coefficient of the difference on the original knots, which
+        bounds the difference everywhere. For a rational spline, the bound that follows from it for the points.
+
+    Raises
+    ------
+    KnotError
+        If a knot is not there as often as asked, or is an end of the domain.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> kw.remove(kw.insert(c, [0.25, 0.5]), [0.25, 0.5]).spline.space == c.space
+    True
+    """
+    axis = spline.axis(axis)
+    original = Original(spline, axis, tolerance)
+    space = spline.spaces[axis]
+    kept = space.without_knots(knots).knots
+    values, counts = distinct(space.knots)
+    gone = counts - (np.searchsorted(kept, values, "right") - np.searchsorted(kept, values, "left"))
+    from_end = np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(space.knots))
+    candidates = from_end < np.repeat(gone, counts)
+    result, mask = search(original, candidates, None)
+    return Removal(result.spline, space.knots[~mask], original.reported(result.bound))
+
+
+def reduce(spline: Spline, tolerance: Any, *, progress: Progress | None = None) -> Reduction:
+    """Return a curve with few knots within a tolerance of the given one.
+
+    Parameters
+    ----------
+    spline : Spline
+        Of one parameter.
+    tolerance : float or array_like, shape (d,)
+        As in `remove`: absolute, in the units of the points, in the maximum norm over components, at equal parameters.
+    progress : callable, optional
+        Called with a fraction from 0 to 1 as the work goes on.
+
+    Returns
+    -------
+    Reduction
+        ``spline``, ``bound`` and ``removed``. End points of clamped curves stay where they are; a closed curve stays
+        closed.
+
+    Raises
+    ------
+    ParameterError
+        If the tolerance is negative or not finite, or the spline has several parameters.
+
+    Examples
+    --------
+    >>> import numpy as np, knotwork as kw
+    >>> x = np.linspace(0, 1, 200)
+    >>> f = kw.curve(np.sin(6 * x), knots=kw.SplineSpace.clamped(3, 200).knots)
+    >>> small = kw.reduce(f, 1e-3)
+    >>> small.spline.space.dimension < 20, small.bound <= 1e-3
+    (True, True)
+    """
+    if len(spline.spaces) != 1:
+        raise ParameterError(
+            f"reduce takes curves; this spline has {len(spline.spaces)} parameters: remove(…, axis=…) takes named knots"
+        )
+    original = Original(spline, 0, tolerance)
+    t = spline.space.knots
+    a, b = spline.space.domain
+    candidates = (t > a) & (t < b)
+    if spline.space.periodic:  # the seam stays, once
+        candidates = t < b
+        candidates[0] = False
+    result, mask = search(original, candidates, progress)
+    return Reduction(result.spline, original.reported(result.bound), t[~mask])
+
+
+class Trial(NamedTuple):
+    """A fit on fewer knots, and what it changed at most in each component."""
+
+    spline: Spline
+    bound: Array
+
+
+class Original:
+    """The spline to be approximated along one axis, with the tolerance in each component of its points."""
+
+    def __init__(self, spline: Spline, axis: int, tolerance: Any) -> None:
+        self.spline, self.axis, self.space = spline, axis, spline.spaces[axis]
+        given = numbers(tolerance, "tolerance", ParameterError)
+        if given.shape not in ((), (spline.dim,)) or given.dtype.kind == "c":
+            raise ParameterError(
+                f"tolerance of shape {given.shape} given; expected a number or one a component, {spline.dim}"
+            )
+        require_finite(given, "tolerance", ParameterError)
+        if (given < 0).any():
+            raise ParameterError(f"tolerance {tolerance} given; expected at least 0")
+        self.one_number = given.ndim == 0
+        flat = spline.coefficients.reshape(-1, spline.coefficients.shape[-1] if not spline.scalar else 1)
+        self.exact = flat.dtype == object
+        n = self.space.degree
+        rounding = 0 if self.exact else 8 * (n + 1) * np.finfo(flat.dtype).eps
+        if spline.rational:
+            points = spline.points.reshape(-1, spline.dim)
+            low, high = points.min(axis=0), points.max(axis=0)
+            self.centre, self.reach = low + (high - low) / 2, (high - low) / 2
+            size = (np.abs(flat[:, :-1]).max(axis=0) + self.reach * flat[:, -1].max()) / flat[:, -1].min()
+        else:
+            size = np.abs(flat).max(axis=0)
+        self.allowed = np.maximum(np.broadcast_to(given, size.shape), size * rounding)
+        # points along the axis, as one curve with many components
+        blocks = as_blocks(spline.coefficients, axis)
+        self.shape = blocks.shape
+        self.d = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(blocks.shape[1], -1)
+        t, zero = self.space.unrolled
+        N = self.space.dimension
+        self.weight = (t[zero + n + 1 : zero + N + n + 1] - t[zero : zero + N]) / (n + 1)
+        if not self.exact:
+            self.d = self.d.astype(np.result_type(self.d.dtype, np.float64))
+            self.weight = self.weight / self.weight.max()
+        positive = [x for x in self.allowed if x > 0]
+        scale = np.array([1 / x if x > 0 else 1 / min(positive, default=1) for x in self.allowed])
+        if spline.rational:
+            smallest = flat[:, -1].min()
+            scale = np.append(scale, (scale * self.reach).max()) / smallest
+        self.scale = np.tile(scale.astype(object if self.exact else np.float64), self.d.shape[1] // len(scale))
+
+    def reported(self, bound: Array) -> Any:
+        """Return the bound as the tolerance was given: a number, or one a component."""
+        return bound.max() if self.one_number else bound
+
+    def difference(self, other: Spline, gone: Array) -> Array:
+        """Return the largest coefficient of the difference to a spline without the knots `gone`.
+
+        Of rational splines A/w and A'/w', the difference is ((A' − A) − f·(w' − w)) / w', with f = A/w; moving the
+        origin to the centre of the points leaves |f| at most `reach`.
+        """
+        back = refine_to(other, self.axis, self.space, gone).coefficients
+        change = (back - self.spline.coefficients).reshape(-1, 1 if self.spline.scalar else back.shape[-1])
+        bound: Array
+        if not self.spline.rational:
+            bound = np.abs(change).max(axis=0)
+            return bound
+        w = back[..., -1].min()
+        if w <= 0:
+            return np.full(self.spline.dim, np.inf)
+        dw = change[:, -1:]
+        bound = (np.abs(change[:, :-1] - self.centre * dw) + self.reach * np.abs(dw)).max(axis=0) / w
+        return bound
+
+    def fit(self, mask: Array) -> Trial:
+        """Return the least-squares fit on the knots in `mask`, with its bound."""
+        space = SplineSpace.trusted(self.space.degree, self.space.knots[mask], self.space.periodic)
+        gone = self.space.knots[~mask]
+        A = matrix_to(space, self.space, gone)
+        c = least_squares(A, self.weight, self.d, self._pinned(space))
+        other, n, inner = self.shape[0], space.dimension, self.shape[2]
+        blocks = np.ascontiguousarray(c.reshape(n, other, inner).transpose(1, 0, 2))
+        shape = self.spline.coefficients.shape
+        coefficients = blocks.reshape(*shape[: self.axis], n, *shape[self.axis + 1 :]).astype(
+            self.spline.coefficients.dtype
+        )
+        spline = self.spline.with_axis(self.axis, space, coefficients)
+        return Trial(spline, self.difference(spline, gone))
+
+    def _pinned(self, space: SplineSpace) -> tuple[int, ...]:
+        """Return the first and last column where the ends are clamped."""
+        if space.periodic:
+            return ()
+        a, b = space.domain
+        ends = ((a, 0), (b, space.dimension - 1))
+        return tuple(column for x, column in ends if space.multiplicity(x) > space.degree)
+
+    def costs(self, trial: Trial, values: Array, copies: Array) -> Array:
+        """Return the cost of each copy of the knots `values` in a fit."""
+        space = trial.spline.spaces[self.axis]
+        t, zero = space.unrolled
+        c = as_blocks(trial.spline.coefficients, self.axis).transpose(1, 0, 2)
+        d = np.ascontiguousarray(c).reshape(len(c[:, 0, 0]), -1)
+        if space.periodic:
+            d = d[space.wrapped(-zero, len(t) - space.degree - 1)]
+        last = zero + np.searchsorted(space.knots, values, "right") - 1
+        d = d if self.exact else d.astype(np.result_type(d.dtype, np.float64))
+        return ranked(t, d, space.degree, last, copies, self.scale)
+
+
+def search(original: Original, candidates: Array, progress: Progress | None) -> tuple[Trial, Array]:
+    """Remove candidate knots until none goes; return the last fit and the mask of knots kept."""
+    t = original.space.knots
+    mask = np.ones(len(t), bool)
+    best = Trial(original.spline, original.allowed * 0)
+    rounds = 0
+    while candidates.any():
+        values, copies = distinct(t[candidates])
+        groups = grouped(original.costs(best, values, copies))
+        owner = np.repeat(np.arange(len(values)), copies)
+
+        attempt = functools.partial(_attempt, original, mask, candidates, owner, copies)
+        low, high, found = 0, len(owner), None
+        count = high  # often everything goes
+        while low < high:
+            accepted = attempt(chosen(groups, count))
+            if accepted:
+                low, found = count, accepted
+            else:
+                high = count - 1
+            count = (low + high + 1) // 2
+            if progress is not None:
+                done = 1 - math.log2(1 + high - low) / math.log2(2 + len(owner))
+                progress(1 - 0.5**rounds * (1 - 0.5 * done))
+        if found is None:  # the cheapest knot does not go; perhaps one of the next does
+            cheapest = np.concatenate(groups)[1:SINGLES]
+            found = next(filter(None, (attempt(cheapest[i : i + 1]) for i in range(len(cheapest)))), None)
+        if found is None:
+            break
+        best, mask = found
+        candidates = candidates & mask
+        rounds += 1
+    if progress is not None:
+        progress(1.0)
+    return best, mask
+
+
+def _attempt(
+    original: Original, mask: Array, candidates: Array, owner: Array, copies: Array, picked: Array
+) -> tuple[Trial, Array] | None:
+    """Fit without the picked copies of candidate knots; None if the tolerance does not admit it."""
+    left = mask.copy()
+    left[_last_copies(candidates, owner, copies, picked)] = False
+    trial = original.fit(left)
+    return (trial, left) if (trial.bound <= original.allowed).all() else None
+
+
+def _last_copies(candidates: Array, owner: Array, copies: Array, picked: Array) -> Array:
+    """Return the places of as many last copies of each candidate knot as were picked of its copies."""
+    taken = np.bincount(owner[picked], minlength=len(copies))
+    from_end = np.cumsum(copies)[owner] - 1 - np.arange(len(owner))
+    return np.flatnonzero(candidates)[from_end < taken[owner]]
+
+
+def grouped(costs: Array) -> list[Array]:
+    """Return the indices of the costs in groups of about equal cost, cheapest first: below ½, then by powers of two."""
+    with np.errstate(divide="ignore"):
+        group = np.where(costs <= 0.5, 0, np.floor(np.log2(2 * np.maximum(costs, 0.5))) + 1)
+    return [np.flatnonzero(group == g) for g in np.unique(group)]
+
+
+def chosen(groups: list[Array], count: int) -> Array:
+    """Return `count` indices: whole groups, and from the last one evenly spread."""
+    parts: list[Array] = []
+    for group in groups:
+        if count <= 0:
+            break
+        take = min(count, len(group))
+        parts.append(group[(np.arange(take) * len(group)) // take])
+        count -= take
+    return np.concatenate(parts) if parts else np.zeros(0, int)
