@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -38,10 +39,10 @@ def running_sums(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
 
 def as_blocks(P: Array, axis: int) -> Array:
     """View C-ordered coefficients as (A, n, B) with the axis in question in the middle."""
+    if axis == 0:
+        return P.reshape(1, len(P), -1)
     shape = P.shape
-    return P.reshape(
-        int(np.prod(shape[:axis], dtype=np.int64)), shape[axis], int(np.prod(shape[axis + 1 :], dtype=np.int64))
-    )
+    return P.reshape(math.prod(shape[:axis]), shape[axis], -1)
 
 
 def derivative(spline: Spline, axis: int = 0, order: int = 1) -> Spline:

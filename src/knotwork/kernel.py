@@ -32,6 +32,9 @@ PER_ELEMENT = 0.35e-6
 #: dimensions up to this one are known to the compiler, which unrolls the loops over them
 UNROLLED = 4
 
+#: how Numba compiles: kernels called by kernels are inlined, and no rule of arithmetic is relaxed
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True}
+
 KERNELS: list[Kernel] = []
 
 _OBJECT = np.dtype(object)
@@ -128,7 +131,7 @@ class Kernel:
     @functools.cached_property
     def digest(self) -> str:
         """A hash of the source, of all kernels below it and of the constants they use."""
-        hasher = hashlib.sha256()
+        hasher = hashlib.sha256(repr(OPTIONS).encode())
         _hash_code(hasher, self.source.__code__)
         for name in self.source.__code__.co_names:
             value = self.source.__globals__.get(name)
@@ -175,7 +178,7 @@ def _compile(bound: FunctionType, digest: str) -> Callable[..., Any]:
     import numba
 
     def dispatcher() -> Any:
-        return numba.njit(nogil=True, error_model="numpy")(bound)
+        return numba.njit(**OPTIONS)(bound)
 
     cached, previous = dispatcher(), numba.config.CACHE_DIR
     try:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from knotwork.errors import KnotError
-from knotwork.numbers import Array, numbers, require_finite
+from knotwork.kernel import kernel
+from knotwork.numbers import Array, empty, numbers, require_finite
 
 
 def sorted_knots(knots: Any, what: str = "knots") -> Array:
@@ -69,9 +70,24 @@ def require_multiplicity(knots: Array, degree: int) -> None:
         raise KnotError(f"knot {x} has multiplicity {int(np.sum(knots == x))}; degree {degree} allows at most {order}")
 
 
+@kernel
+def merge(U, W, T):  # type: ignore[no-untyped-def]
+    """T = all of the sorted U and W, sorted."""
+    j = k = 0
+    for i in range(len(T)):
+        if k >= len(W) or (j < len(U) and U[j] <= W[k]):
+            T[i] = U[j]
+            j += 1
+        else:
+            T[i] = W[k]
+            k += 1
+
+
 def merged(a: Array, b: Array) -> Array:
-    """Return all knots of both, sorted: multiplicities add."""
-    return np.sort(np.concatenate([a, b]), kind="stable")
+    """Return all knots of two sorted arrays, sorted: multiplicities add."""
+    T = empty((len(a) + len(b),), np.result_type(a.dtype, b.dtype))
+    merge(a, b, T)
+    return T
 
 
 def multiset(knots: Iterable[Any]) -> dict[Any, int]:

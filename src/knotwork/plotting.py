@@ -89,7 +89,14 @@ def plot(
         raise ParameterError(f"samples {samples!r} given; expected an integer of at least 1")
     spatial = _spatial([*under, *over])
     ax = _axes(ax, spatial)
-    _draw(ax, under, False, False, samples, {"color": PALE, "linewidth": 4, "label": "before" if label else None})
+    _draw(
+        ax,
+        under,
+        False,
+        False,
+        samples,
+        {"color": PALE, "linewidth": 4, "zorder": 1, "label": "before" if label else None},
+    )
     if control and under:
         dots = _joined(_polylines(_control(s)) for s in under)
         ax.plot(*dots.T, ".", color=PALE, markeredgecolor="#d99b62", markersize=_size(under, 5), zorder=2)

@@ -76,6 +76,7 @@ class SplineSpace(Frozen):
     degree: int
     knots: Array
     periodic: bool
+    _cache: dict[str, Any]
 
     def __init__(self, degree: int, knots: Any, *, periodic: bool = False) -> None:
         if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
@@ -193,7 +194,9 @@ class SplineSpace(Frozen):
         """
         if not self.periodic:
             return self.knots, 0
-        return self.cached("unrolled", lambda: (self._turns(-self.order, self.dimension + 2 * self.order), self.order))
+        k = self.order
+        unrolled: tuple[Array, int] = self.cached("unrolled", lambda: (self._turns(-k, self.dimension + 2 * k), k))
+        return unrolled
 
     def _turns(self, lo: int, hi: int) -> Array:
         """Return knots lo … hi of the periodic sequence: t[i + dimension] = t[i] + period."""

@@ -50,6 +50,7 @@ class Spline(Frozen):
     spaces: tuple[SplineSpace, ...]
     coefficients: Array
     rational: bool
+    _points: Array | None
 
     def __init__(self, spaces: SplineSpace | Sequence[SplineSpace], coefficients: Any, rational: bool = False) -> None:
         spaces = (spaces,) if isinstance(spaces, SplineSpace) else tuple(spaces)
@@ -135,7 +136,7 @@ class Spline(Frozen):
             plain = self.coefficients[..., :-1] / self.coefficients[..., -1:]
             plain.setflags(write=False)
             _set(self, "_points", plain)
-        return self._points  # type: ignore[no-any-return]
+        return self._points
 
     @property
     def weights(self) -> Array | None:

@@ -38,7 +38,9 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
 
     The top-down recurrence of the discrete B-splines (Oslo I, §4.13) over the v new knots alone.
     """
-    if v == 1:
+    if v == 0:
+        E[i, 0] = U[hu] - U[hu] + 1
+    elif v == 1:
         b = (W[lw] - U[lu - 1]) / (U[hu] - U[lu - 1])
         E[i, 0] = 1 - b
         E[i, 1] = b
@@ -51,6 +53,19 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
         E[i, 0] = a * (1 - c)
         E[i, 1] = a * c + b * (1 - d)
         E[i, 2] = b * d
+    elif v == 3:
+        x, y, z = W[lw], W[lw + 1], W[lw + 2]
+        L1, L2, L3 = U[lu - 1], U[lu - 2], U[lu - 3]
+        R1, R2, R3 = U[hu], U[hu + 1], U[hu + 2]
+        b = (x - L1) / (R1 - L1)
+        c, d = (y - L2) / (R1 - L2), (y - L1) / (R2 - L1)
+        e, f, g = (z - L3) / (R1 - L3), (z - L2) / (R2 - L2), (z - L1) / (R3 - L1)
+        a = 1 - b
+        p, q, r = a * (1 - c), a * c + b * (1 - d), b * d
+        E[i, 0] = p * (1 - e)
+        E[i, 1] = p * e + q * (1 - f)
+        E[i, 2] = q * f + r * (1 - g)
+        E[i, 3] = r * g
     else:
         zero = U[hu] - U[hu]
         E[i, 0] = zero + 1

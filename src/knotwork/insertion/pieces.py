@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.calculus import as_blocks
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.insert import refine_to
-from knotwork.knots import distinct, new_knots, sorted_knots
+from knotwork.knots import distinct, merged, new_knots, sorted_knots
 from knotwork.numbers import Array, exact, numbers
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -187,8 +187,8 @@ def _insert_anywhere(spline: Spline, axis: int, new: Array) -> Spline:
     if not len(new):
         return spline
     space = spline.spaces[axis]
-    merged = np.sort(np.concatenate([space.knots, new]), kind="stable")
-    return refine_to(spline, axis, SplineSpace.trusted(space.degree, merged), new)
+    knots = merged(space.knots, new)
+    return refine_to(spline, axis, SplineSpace.trusted(space.degree, knots), new)
 
 
 def _opened(spline: Spline, axis: int) -> Spline:
