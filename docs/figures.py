@@ -1,0 +1,70 @@
+"""Make the pictures of the documentation: python docs/figures.py."""
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("agg")
+from matplotlib import pyplot as plt
+
+import knotwork as kw
+from knotwork.plotting import INK, KNOT, NET
+
+IMAGES = Path(__file__).with_name("images")
+HUES = ["#1f3a5f", "#c4502f", "#3c8d6e", "#b58a1b", "#7a4f9a", "#4a90c2"]
+
+
+def periodic() -> None:
+    """Draw a periodic space of degree 2, seam doubled: its basis functions over the knots, and a curve of it."""
+    space = kw.SplineSpace(2, [0, 0, 1, 2, 3, 4], periodic=True)
+    n, N = space.degree, space.dimension
+    (a, b), t = space.domain, np.arange(-1, N + n + 2)
+    knots = space.knots[t % N] + (t // N) * (b - a)
+    fig, (line, plane) = plt.subplots(1, 2, figsize=(11, 4.2), width_ratios=[1.5, 1], layout="constrained")
+
+    # each basis function where it starts, and again one period later: pale beyond the period
+    u = np.linspace(a, b, 801)
+    for i in range(N):
+        B = kw.Spline(space, np.eye(N)[i])
+        start, end = knots[1 + i], knots[1 + i + n + 1]
+        x = np.linspace(start, end, 400)[1:-1]
+        inside = x < b
+        line.plot(x[inside], B(x[inside]), color=HUES[i], linewidth=1.8)
+        line.plot(x[~inside], B(x[~inside]), color=HUES[i], linewidth=1.8, alpha=0.3)
+        wrapped = u[(u >= a) & (u < end - (b - a))]
+        line.plot(wrapped, B(wrapped), color=HUES[i], linewidth=1.8, linestyle=(0, (2, 2)))
+        top = x[np.argmax(B(x))]
+        line.annotate(f"$B_{i}$", (top, B(top)), (0, 4), textcoords="offset points", color=HUES[i], ha="center")
+    for i, x in enumerate(space.knots):
+        lift = 0.075 * sum(space.knots[:i] == x)
+        line.plot(x, -0.08 - lift, "o" if i < N else "|", color=KNOT, markersize=6 if i < N else 11, markeredgewidth=2)
+        name = f"$t_{i}$" if i < N else f"$t_{N}$ = end"
+        line.annotate(name, (x, -0.08 - lift), (8, 0), textcoords="offset points", va="center", color=KNOT)
+    line.axvspan(a, b, color=INK, alpha=0.05, linewidth=0)
+    line.annotate("one period", ((a + b) / 2, 1.13), ha="center", color=INK)
+    line.set(xlim=(-0.35, 5.4), ylim=(-0.3, 1.22), xticks=range(6), yticks=[0, 1])
+    line.spines[["top", "right", "left"]].set_visible(False)
+
+    points = np.array([[2.4, 2.4], [0.2, 3.1], [0.1, 0.2], [4.4, 0.0], [4.5, 3.2]])
+    points = np.roll(points, -1, axis=0)  # P₄ is the blossom at the seam: the corner
+    curve = kw.Spline(space, points)
+    kw.plot(curve, plane, knots=True)
+    middle = points.mean(axis=0)
+    for i, p in enumerate(points):
+        away = (p - middle) / np.linalg.norm(p - middle)
+        plane.annotate(f"$P_{i}$", p, 12 * away, textcoords="offset points", ha="center", va="center", color="#70757a")
+    for i, x in enumerate(space.knots[:N]):
+        p = curve(x)
+        toward = (middle - p) / np.linalg.norm(middle - p)
+        offset = 14 * toward if i else 32 * toward
+        name = "" if i == 0 else f"$t_{i}$" if i > 1 else "$t_0=t_1$"
+        plane.annotate(name, p, offset, textcoords="offset points", ha="center", va="center", color=KNOT)
+    plane.margins(0.14)
+    plane.set_axis_off()
+    fig.savefig(IMAGES / "periodic.png", dpi=150)
+
+
+if __name__ == "__main__":
+    IMAGES.mkdir(exist_ok=True)
+    periodic()

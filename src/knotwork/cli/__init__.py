@@ -1,0 +1,5 @@
+"""The command `knotwork`: a thin command for each function of the face, over files."""
+
+from knotwork.cli.commands import main
+
+__all__ = ["main"]

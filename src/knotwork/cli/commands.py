@@ -1,0 +1,386 @@
+"""The commands: read, call the function of the same name, write, and say what happened."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from knotwork.cli import report, terminal
+from knotwork.cli.terminal import Commands, Failure, Progress, Tolerance
+
+if TYPE_CHECKING:
+    from knotwork import Spline
+
+FILE = click.Path(path_type=Path)
+
+output = click.option("-o", "--output", type=FILE, required=True, help="File to write; the suffix tells the format.")
+maybe_output = click.option("-o", "--output", type=FILE, help="File to write; without it the result is only reported.")
+as_json = click.option("--json", "as_json", is_flag=True, help="Report in JSON.")
+axis_option = click.option("--axis", type=int, default=0, help="Parameter of a surface: 0 (default) or 1.")
+only = click.option(
+    "--only", type=int, multiple=True, metavar="N", help="Change only spline N of the file; repeatable."
+)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="knotwork", prog_name="knotwork", message="%(prog)s %(version)s")
+def main() -> None:
+    """Insert, delete and convert the knots of B-spline curves and surfaces.
+
+    Files are read and written by their suffix: .json, .npz, .csv (polylines), .svg (paths and shapes).
+
+    \b
+    Examples:
+      knotwork info drawing.svg
+      knotwork reduce coast.csv --degree 3 --tolerance 0.5 -o coast.svg
+      knotwork plot coast.svg --before coast.csv -o coast.png
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+@main.command(short_help="Tell what splines files hold.")
+@click.argument("files", type=FILE, nargs=-1, required=True)
+@as_json
+def info(files: Sequence[Path], as_json: bool) -> None:
+    """Tell what splines FILES hold: degree, points, knots, continuity, domain, bounds.
+
+    \b
+    Example:
+      knotwork info drawing.svg
+    """
+    found = [(path, _read(path)) for path in files]
+    if as_json:
+        _print_json([{"file": str(path), "splines": [report.facts(s) for s in splines]} for path, splines in found])
+        return
+    for i, (path, splines) in enumerate(found):
+        points = sum(s.coefficients.size // (s.dim + s.rational) for s in splines)
+        heading = f"{path}: {report.counted(len(splines), 'spline')}, {report.counted(points, 'point')}"
+        click.echo("\n" * (i > 0) + heading + "\n\n" + report.summary(splines))
+
+
+@main.command(short_help="Insert knots: more control points, the same shape.")
+@click.argument("file", type=FILE)
+@click.option("-k", "--knots", type=terminal.knots, multiple=True, help="New knots, as in 0.25,0.5,0.5; repeatable.")
+@click.option("--parts", type=click.IntRange(2, 10**6), help="Divide every knot interval into so many equal parts.")
+@axis_option
+@only
+@output
+@as_json
+def insert(
+    file: Path,
+    knots: Sequence[list[float]],
+    parts: int | None,
+    axis: int,
+    only: Sequence[int],
+    output: Path,
+    as_json: bool,
+) -> None:
+    """Insert knots into the splines of FILE; their shape stays as it is.
+
+    \b
+    Examples:
+      knotwork insert curve.json -k 0.25,0.5,0.5 -o finer.json
+      knotwork insert drawing.svg --parts 2 -o finer.json
+    """
+    import numpy as np
+
+    import knotwork as kw
+
+    if not knots and parts is None:
+        raise click.UsageError("nothing to insert; expected --knots or --parts")
+
+    def change(spline: Spline) -> tuple[Spline, float]:
+        if parts is not None:
+            x = spline.spaces[spline.axis(axis)].breaks
+            steps = np.arange(1, parts) / parts
+            spline = kw.insert(spline, (x[:-1, None] + np.diff(x)[:, None] * steps).ravel(), axis)
+        return kw.insert(spline, [x for given in knots for x in given], axis) if knots else spline, 0.0
+
+    _change(file, output, only, as_json, change)
+
+
+@main.command(short_help="Remove given knots, as far as a tolerance admits.")
+@click.argument("file", type=FILE)
+@click.option(
+    "-k", "--knots", type=terminal.knots, multiple=True, help="Knots to remove, as in 0.25,0.5,0.5; repeatable."
+)
+@click.option(
+    "--all", "every", is_flag=True, help="Remove all knots inside the domain, as far as the tolerance admits."
+)
+@click.option("-t", "--tolerance", type=terminal.tolerance, default="0", help="Largest error: a length, or as in 0.1%.")
+@axis_option
+@only
+@maybe_output
+@as_json
+def remove(
+    file: Path,
+    knots: Sequence[list[float]],
+    every: bool,
+    tolerance: Tolerance,
+    axis: int,
+    only: Sequence[int],
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Remove knots from the splines of FILE, as many as the tolerance admits.
+
+    \b
+    Examples:
+      knotwork remove curve.json -k 0.5,0.5 --tolerance 0.01 -o coarser.json
+      knotwork remove curve.json --all --tolerance 1e-12 -o clean.json
+    """
+    import knotwork as kw
+
+    if bool(knots) == every:
+        raise click.UsageError("expected either --knots or --all")
+
+    def change(spline: Spline, allowed: float) -> tuple[Spline, float]:
+        space = spline.spaces[spline.axis(axis)]
+        asked = [x for given in knots for x in given]
+        if every:
+            inside = space.breaks[:-1] if space.periodic else space.breaks[1:-1]
+            asked = [x for x in inside for _ in range(space.multiplicity(x))]
+        if not asked:
+            return spline, 0.0
+        removal = kw.remove(spline, asked, axis, allowed)
+        return removal.spline, float(removal.bound)
+
+    _change(file, output, only, as_json, change, tolerance)
+
+
+@main.command(short_help="Find splines with few knots within a tolerance.")
+@click.argument("file", type=FILE)
+@click.option(
+    "-t",
+    "--tolerance",
+    type=terminal.tolerance,
+    required=True,
+    help="Largest error: a length, or as in 0.1% of the extent.",
+)
+@click.option("-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree to this one first.")
+@maybe_output
+@as_json
+def reduce(file: Path, tolerance: Tolerance, degree: int | None, output: Path | None, as_json: bool) -> None:
+    """Find splines with few knots within a tolerance of those of FILE.
+
+    The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file.
+    The bound in the report is proven: no point is farther, in any coordinate, from where it was.
+
+    \b
+    Examples:
+      knotwork reduce coast.csv --degree 3 --tolerance 0.5 -o coast.svg
+      knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
+    """
+    import knotwork as kw
+
+    def change(spline: Spline, allowed: float, progress: Callable[[float], None]) -> tuple[Spline, float]:
+        for axis, given in enumerate(spline.degree):
+            spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
+        reduction = kw.reduce(spline, allowed, progress=progress)
+        return reduction.spline, float(reduction.bound)
+
+    _change(file, output, (), as_json, change, tolerance, "reducing")
+
+
+@main.command(short_help="Write splines in Bézier form.")
+@click.argument("file", type=FILE)
+@output
+@as_json
+def bezier(file: Path, output: Path, as_json: bool) -> None:
+    """Write the splines of FILE in Bézier form: each knot inside has the degree as its multiplicity.
+
+    \b
+    Example:
+      knotwork bezier curve.json -o pieces.json
+    """
+    _change(file, output, (), as_json, lambda spline: (_in_bezier_form(spline), 0.0))
+
+
+@main.command(short_help="Convert between file formats.")
+@click.argument("files", type=FILE, nargs=-1, required=True)
+@click.option("--accuracy", type=float, help="Largest error, in the units of the points, if the format is not exact.")
+@output
+@as_json
+def convert(files: Sequence[Path], accuracy: float | None, output: Path, as_json: bool) -> None:
+    """Write the splines of FILES, all together, to a file of another format.
+
+    \b
+    Example:
+      knotwork convert drawing.svg -o drawing.json
+    """
+    from knotwork.files import write
+
+    _require_writable(output)
+    written = write(output, [s for path in files for s in _read(path)], accuracy=accuracy)
+    if as_json:
+        _print_json({"output": str(output), "splines": written.count, "bound": written.bound})
+    else:
+        click.echo(f"{report.counted(written.count, 'spline')} written to {output}{_error_of(written.bound)}")
+
+
+@main.command(short_help="Draw splines.")
+@click.argument("file", type=FILE)
+@click.option("--before", type=FILE, help="File with what the splines were before, drawn pale below.")
+@click.option("--control/--no-control", default=True, help="Draw control points.  [default: yes]")
+@click.option("--knots/--no-knots", default=True, help="Draw knots.  [default: yes]")
+@click.option("--size", type=(float, float), default=(8, 6), metavar="W H", help="In inches.  [default: 8 6]")
+@click.option("--dpi", type=click.FloatRange(10, 2400), default=150, help="Dots an inch.  [default: 150]")
+@click.option("-o", "--output", type=FILE, required=True, help="Picture to write: .png, .svg, .pdf, ….")
+def plot(
+    file: Path, before: Path | None, control: bool, knots: bool, size: tuple[float, float], dpi: float, output: Path
+) -> None:
+    """Draw the splines of FILE, with control points and knots.
+
+    \b
+    Examples:
+      knotwork plot drawing.svg -o drawing.png
+      knotwork plot small.svg --before drawing.svg --size 10 10 -o both.pdf
+    """
+    splines, under = _read(file), _read(before) if before else None
+    if output.exists() and any(path and path.exists() and path.samefile(output) for path in (file, before)):
+        raise Failure(f"{output}: the picture would replace the splines; give it another name")
+    _require_writable(output, pictures=True)
+    import matplotlib
+
+    matplotlib.use("agg")
+    from knotwork.files.storage import replace
+    from knotwork.plotting import plot as draw
+
+    ax = draw(splines, before=under, control=control, knots=knots)
+    if file.suffix.lower() == ".svg" and ax.name != "3d":
+        ax.invert_yaxis()  # in SVG, y points down
+    picture = io.BytesIO()
+    figure: Any = ax.figure
+    figure.set_size_inches(size)
+    figure.savefig(picture, format=output.suffix[1:].lower(), dpi=dpi)
+    replace(output, picture.getvalue())
+    click.echo(f"{report.counted(len(splines), 'spline')} drawn in {output}")
+
+
+# ---- what they share ------------------------------------------------------------------------------------------------
+
+
+def _change(
+    file: Path,
+    output: Path | None,
+    only: Sequence[int],
+    as_json: bool,
+    change: Callable[..., tuple[Spline, float]],
+    tolerance: Tolerance | None = None,
+    working: str | None = None,
+) -> None:
+    """Read, change each spline (or only some), write, report.
+
+    `change` takes a spline, the tolerance if there is one, and a function to report progress to if it is `working`.
+    """
+    from knotwork.files import write
+
+    if output:
+        _require_writable(output)
+    splines = _read(file)
+    for i in only:
+        if not 0 <= i < len(splines):
+            raise click.UsageError(f"--only {i}: {file} holds splines 0 to {len(splines) - 1}")
+    allowed = [tolerance.of(_extent(splines))] if tolerance else []
+    chosen = sorted(set(only)) or range(len(splines))
+    progress = Progress(working or "working", sum(splines[i].coefficients.size for i in chosen))
+    rows, changed = [], list(splines)
+    try:
+        for i in chosen:
+            size = splines[i].coefficients.size
+            start = time.perf_counter()
+            tell = [lambda part, size=size: progress.update(part * size)] if working else []
+            changed[i], bound = change(splines[i], *allowed, *tell)
+            rows.append(_row(i, splines[i], changed[i], bound, time.perf_counter() - start))
+            progress.finish(size)
+    finally:
+        progress.close()
+    written = write(output, changed) if output else None
+    if as_json:
+        told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "splines": rows}
+        told |= {"tolerance": allowed[0]} if allowed else {}
+        told |= {"written_bound": written.bound} if written else {}
+        _print_json(told)
+        return
+    limit = f", tolerance {allowed[0]:.6g}" if allowed else ""
+    click.echo(f"{file}: {report.counted(len(rows), 'spline')}{limit}\n\n{report.comparison(rows)}\n")
+    click.echo(f"written to {output}{_error_of(written.bound)}" if written else "nothing written (no --output)")
+
+
+def _row(index: int, before: Spline, after: Spline, bound: float, seconds: float) -> dict[str, Any]:
+    return {
+        "index": index,
+        "degree": list(after.degree),
+        "points": [[space.dimension for space in s.spaces] for s in (before, after)],
+        "pieces": [[len(space.breaks) - 1 for space in s.spaces] for s in (before, after)],
+        "bound": bound,
+        "seconds": round(seconds, 6),
+    }
+
+
+def _in_bezier_form(spline: Spline) -> Spline:
+    """Return the spline with each knot inside repeated as often as the degree; what is periodic stays so."""
+    import knotwork as kw
+
+    if not any(space.periodic for space in spline.spaces):
+        spline = kw.clamp(spline)
+    for axis, space in enumerate(spline.spaces):
+        inside = space.breaks[:-1] if space.periodic else space.breaks[1:-1]
+        missing = [x for x in inside for _ in range(space.degree - space.multiplicity(x))]
+        if missing:
+            spline = kw.insert(spline, missing, axis)
+    return spline
+
+
+def _extent(splines: Sequence[Spline]) -> float:
+    """Return the longest side of the box that holds all splines."""
+    bounds = [s.bounds for s in splines]
+    return float(
+        max(
+            max(b[1][k] for b in bounds if k < b.shape[1]) - min(b[0][k] for b in bounds if k < b.shape[1])
+            for k in range(max(b.shape[1] for b in bounds))
+        )
+    )
+
+
+def _read(path: Path) -> list[Spline]:
+    from knotwork.files import read
+
+    return read(path)
+
+
+def _require_writable(output: Path, pictures: bool = False) -> None:
+    """Raise before the work if a file of this name could not be written after it."""
+    if pictures:
+        try:
+            from matplotlib.backend_bases import FigureCanvasBase
+        except ImportError as exc:
+            raise Failure("pictures need matplotlib: pip install 'knotwork[plot]'") from exc
+        known = sorted(f".{name}" for name in FigureCanvasBase.get_supported_filetypes())
+    else:
+        from knotwork.files import FORMATS
+
+        known = list(FORMATS)
+    if output.suffix.lower() not in known:
+        raise Failure(f"{output}: unknown suffix {output.suffix!r}; expected one of {', '.join(known)}")
+    if output.is_dir():
+        raise Failure(f"{output}: is a directory; expected a file name")
+    if not output.absolute().parent.is_dir():
+        raise Failure(f"{output}: there is no directory {output.parent}")
+
+
+def _error_of(bound: float) -> str:
+    return f", with an error of at most {bound:.3g}" if bound else ""
+
+
+def _print_json(told: Any) -> None:
+    click.echo(json.dumps(told, indent=2, ensure_ascii=False))

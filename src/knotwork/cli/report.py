@@ -1,0 +1,165 @@
+"""What the commands say about splines: facts, and tables that a person likes to read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from knotwork import Spline, SplineSpace
+
+#: curves that a table shows one by one; of longer lists the largest and the sum of the others
+ROWS = 12
+
+
+def kind(spline: Spline) -> str:
+    """Return the kind of a spline in words."""
+    names = {1: "curve", 2: "surface", 3: "volume"}
+    words = [names.get(spline.parameters, f"{spline.parameters}-parameter spline")]
+    if any(space.periodic for space in spline.spaces):
+        words.insert(0, "closed" if spline.parameters == 1 else "periodic")
+    if spline.rational:
+        words.insert(0, "rational")
+    return " ".join(words) + (" of numbers" if spline.scalar else f" in {spline.dim}-D")
+
+
+def multiplicities(space: SplineSpace) -> tuple[dict[int, int], list[int]]:
+    """Return how many interior knots have each multiplicity, and the multiplicities of the ends.
+
+    In a periodic space all knots are interior, and there are no ends.
+    """
+    found = [space.multiplicity(x) for x in space.breaks]
+    inside, ends = (found[:-1], []) if space.periodic else (found[1:-1], [found[0], found[-1]])
+    return {m: inside.count(m) for m in sorted(set(inside))}, ends
+
+
+def continuity(space: SplineSpace) -> int | None:
+    """Return the least continuity that the knots allow inside the domain, -1 for a jump; None for a single piece."""
+    inside, _ = multiplicities(space)
+    return space.degree - max(inside) if inside else None
+
+
+def facts(spline: Spline) -> dict[str, Any]:
+    """Return what there is to know about a spline, ready for JSON; lists have one entry a parameter."""
+    spread = [multiplicities(space) for space in spline.spaces]
+    real = spline.coefficients.dtype.kind != "c"
+    return {
+        "kind": kind(spline),
+        "dimension": spline.dim,
+        "rational": spline.rational,
+        "dtype": "exact" if spline.coefficients.dtype == object else str(spline.coefficients.dtype),
+        "degree": list(spline.degree),
+        "points": [space.dimension for space in spline.spaces],
+        "periodic": [space.periodic for space in spline.spaces],
+        "pieces": [len(space.breaks) - 1 for space in spline.spaces],
+        "knots": [{"inside": {str(m): count for m, count in inside.items()}, "ends": ends} for inside, ends in spread],
+        "continuity": [continuity(space) for space in spline.spaces],
+        "domain": [[float(x) for x in space.domain] for space in spline.spaces],
+        "bounds": [[float(x) for x in corner] for corner in spline.bounds] if real else None,
+    }
+
+
+def described(spline: Spline) -> list[tuple[str, str]]:
+    """Return the facts of a spline as names and texts."""
+    f = facts(spline)
+    return [
+        ("kind", f["kind"] + ("" if f["dtype"] == "float64" else f", {f['dtype']}")),
+        ("degree", _by(f["degree"])),
+        ("points", _by(f"{n:,}" for n in f["points"])),
+        ("pieces", _by(f"{n:,}" for n in f["pieces"])),
+        *[("knots" + _letter(spline, i), _knots(space)) for i, space in enumerate(spline.spaces)],
+        ("continuity", _by(map(_smooth, f["continuity"]))),
+        ("domain", _by(map(interval, f["domain"]))),
+        ("bounds", _by(map(interval, zip(*f["bounds"], strict=True))) if f["bounds"] else "complex numbers"),
+    ]
+
+
+def summary(splines: Sequence[Spline]) -> str:
+    """Return a text about a few splines, a table about many."""
+    if len(splines) <= 3:
+        return "\n\n".join(
+            "\n".join([f"[{i}]", *(f"  {name:<12}{text}" for name, text in described(s))])
+            for i, s in enumerate(splines)
+        )
+    rows = []
+    for i, s in enumerate(splines):
+        told = dict(described(s))
+        knots = " | ".join(_knots(space) for space in s.spaces)
+        rows.append([str(i), told["kind"], told["degree"], told["points"], told["continuity"], knots, told["bounds"]])
+    return table("><>><<<", ["#", "kind", "degree", "points", "continuity", "knots inside; ends", "bounds"], rows)
+
+
+def comparison(rows: Sequence[dict[str, Any]]) -> str:
+    """Return the table of what was done to each spline: points and pieces before and after, bound and time."""
+    shown = rows if len(rows) <= ROWS else sorted(rows, key=lambda r: -_size(r["points"][0]))[: ROWS - 1]
+    rest = [r for r in rows if r not in shown]
+    cells = [_compared(str(r["index"]), [r]) for r in shown]
+    if rest:
+        cells.append(_compared(f"{len(rest)} others", rest))
+    total = _compared("all", rows) if len(rows) > 1 else None
+    return table(">>>>>>>>", ["#", "degree", "points", "→ after", "pieces", "→ after", "bound", "time"], cells, total)
+
+
+def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
+    counts = [sum(_size(r[what][i]) for r in rows) for what in ("points", "pieces") for i in (0, 1)]
+    degrees = sorted({_by(r["degree"]) for r in rows})
+    bounds = [r["bound"] for r in rows]
+    return [
+        name,
+        degrees[0] if len(degrees) == 1 else f"{degrees[0]}–{degrees[-1]}",
+        *(f"{n:,}" for n in counts),
+        f"{max(bounds):.3g}",
+        duration(sum(r["seconds"] for r in rows)),
+    ]
+
+
+def table(align: str, header: Sequence[str], rows: Sequence[Sequence[str]], total: Sequence[str] | None = None) -> str:
+    """Return rows aligned under a header, a last one below a rule."""
+    every = [header, *rows, *([total] if total else [])]
+    widths = [max(len(row[i]) for row in every) for i in range(len(header))]
+    lines = ["  ".join(f"{c:{a}{w}}" for c, a, w in zip(row, align, widths, strict=True)).rstrip() for row in every]
+    rule = "─" * max(map(len, lines))
+    lines.insert(1, rule)
+    if total:
+        lines.insert(-1, rule)
+    return "\n".join(lines)
+
+
+def interval(ends: Sequence[float]) -> str:
+    """Return an interval as a text."""
+    return f"[{ends[0]:.6g}, {ends[1]:.6g}]"
+
+
+def duration(seconds: float) -> str:
+    """Return a time with its unit."""
+    return f"{seconds * 1000:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"
+
+
+def counted(n: int, what: str) -> str:
+    """Return a count with its noun."""
+    return f"{n:,} {what}{'' if n == 1 else 's'}"
+
+
+def _knots(space: SplineSpace) -> str:
+    inside, ends = multiplicities(space)
+    told = [f"{count:,} of multiplicity {m}" for m, count in inside.items()] or ["none inside"]
+    return ", ".join(told) + (f"; ends {ends[0]} and {ends[1]}" if ends else "")
+
+
+def _smooth(order: int | None) -> str:
+    return "one piece" if order is None else "jumps" if order < 0 else f"C{order}"
+
+
+def _letter(spline: Spline, axis: int) -> str:
+    return "" if spline.parameters == 1 else f" {'uvw'[axis]}" if axis < 3 else f" {axis}"
+
+
+def _by(parts: Any) -> str:
+    return " × ".join(map(str, parts))
+
+
+def _size(counts: Sequence[int]) -> int:
+    size = 1
+    for n in counts:
+        size *= n
+    return size

@@ -1,0 +1,114 @@
+"""How the commands talk: errors and notes of one line, progress on a terminal, tolerances and lists as arguments."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import click
+
+from knotwork.errors import KnotworkError, MissingExtraError
+
+
+class Failure(click.ClickException):
+    """What went wrong, in one line on stderr; the exit code is 1."""
+
+    def show(self, file: Any = None) -> None:
+        """Write the line."""
+        click.echo(f"knotwork: {' '.join(self.message.split())}", err=True)
+
+
+class Commands(click.Group):
+    """Commands whose errors become one line, and whose warnings become notes."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command."""
+        try:
+            with notes():
+                return super().invoke(ctx)
+        except BrokenPipeError:
+            raise
+        except (KnotworkError, MissingExtraError, MemoryError, OSError) as exc:
+            raise Failure(str(exc) or type(exc).__name__) from exc
+
+
+@contextmanager
+def notes() -> Iterator[None]:
+    """Show warnings as lines on stderr."""
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        click.echo(f"knotwork: note: {' '.join(str(message).split())}", err=True)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        warnings.showwarning = show
+        yield
+
+
+class Progress:
+    """A percentage on stderr, if that is a terminal and the work takes longer than half a second."""
+
+    def __init__(self, what: str, total: float) -> None:
+        self.what, self.total, self.done = what, max(total, 1), 0.0
+        self.start, self.shown = time.monotonic(), -1
+        self.visible = sys.stderr.isatty()
+
+    def update(self, part: float) -> None:
+        """Show that beyond the finished work `part` of the total is done."""
+        percent = int(100 * min((self.done + part) / self.total, 1))
+        if self.visible and percent != self.shown and time.monotonic() - self.start > 0.5:
+            self.shown = percent
+            click.echo(f"\r{self.what} … {percent:3d}%", err=True, nl=False)
+
+    def finish(self, part: float) -> None:
+        """Count `part` of the total as finished."""
+        self.done += part
+        self.update(0)
+
+    def close(self) -> None:
+        """Clear the line."""
+        if self.shown >= 0:
+            click.echo("\r\033[K", err=True, nl=False)
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """A length in the units of the points, or a part of their extent."""
+
+    value: float
+    relative: bool
+
+    def of(self, extent: float) -> float:
+        """Return the length."""
+        return self.value * extent if self.relative else self.value
+
+
+def tolerance(text: str) -> Tolerance:
+    """Return the tolerance that a text means: a number of at least 0, or a percentage such as 0.1%."""
+    number = _number(text.removesuffix("%"))
+    if not 0 <= number < math.inf:
+        raise click.BadParameter(f"{text!r}; expected a length of at least 0 such as 0.5, or a percentage such as 0.1%")
+    relative = text.endswith("%")
+    return Tolerance(number / 100 if relative else number, relative)
+
+
+def knots(text: str) -> list[float]:
+    """Return the numbers of a list separated by commas."""
+    found = [_number(part) for part in text.split(",")]
+    if not all(map(math.isfinite, found)):
+        raise click.BadParameter(f"{text!r}; expected finite numbers separated by commas, such as 0.25,0.5,0.5")
+    return found
+
+
+def _number(text: str) -> float:
+    """Return a text as a number, NaN if it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
