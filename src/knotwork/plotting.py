@@ -102,7 +102,7 @@ def plot(
         ax.plot(*dots.T, ".", color=PALE, markeredgecolor="#d99b62", markersize=_size(under, 5), zorder=2)
     _draw(ax, over, control, knots, samples, {"label": label, **style})
     if spatial or all(s.dim > 1 or s.coefficients.dtype.kind == "c" for s in over):
-        ax.set_aspect("equal", adjustable="box" if spatial else "datalim")
+        ax.set_aspect("equal")
     return ax
 
 

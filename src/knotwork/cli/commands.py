@@ -14,6 +14,7 @@ import click
 
 from knotwork.cli import report, terminal
 from knotwork.cli.terminal import Commands, Failure, Progress, Tolerance
+from knotwork.errors import KnotworkError, MissingExtraError
 
 if TYPE_CHECKING:
     from knotwork import Spline
@@ -24,6 +25,7 @@ output = click.option("-o", "--output", type=FILE, required=True, help="File to 
 maybe_output = click.option("-o", "--output", type=FILE, help="File to write; without it the result is only reported.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Report in JSON.")
 axis_option = click.option("--axis", type=int, default=0, help="Parameter of a surface: 0 (default) or 1.")
+flip = click.option("--flip", is_flag=True, help="Turn upside down: y points up in most data, down in SVG.")
 only = click.option(
     "--only", type=int, multiple=True, metavar="N", help="Change only spline N of the file; repeatable."
 )
@@ -39,8 +41,8 @@ def main() -> None:
     \b
     Examples:
       knotwork info drawing.svg
-      knotwork reduce coast.csv --degree 3 --tolerance 0.5 -o coast.svg
-      knotwork plot coast.svg --before coast.csv -o coast.png
+      knotwork reduce coast.csv --degree 3 --tolerance 0.5 -o coast.json
+      knotwork plot coast.json --before coast.csv -o coast.png
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -167,9 +169,12 @@ def remove(
     help="Largest error: a length, or as in 0.1% of the extent.",
 )
 @click.option("-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree to this one first.")
+@flip
 @maybe_output
 @as_json
-def reduce(file: Path, tolerance: Tolerance, degree: int | None, output: Path | None, as_json: bool) -> None:
+def reduce(
+    file: Path, tolerance: Tolerance, degree: int | None, flip: bool, output: Path | None, as_json: bool
+) -> None:
     """Find splines with few knots within a tolerance of those of FILE.
 
     The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file.
@@ -177,7 +182,7 @@ def reduce(file: Path, tolerance: Tolerance, degree: int | None, output: Path | 
 
     \b
     Examples:
-      knotwork reduce coast.csv --degree 3 --tolerance 0.5 -o coast.svg
+      knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
     """
     import knotwork as kw
@@ -186,7 +191,7 @@ def reduce(file: Path, tolerance: Tolerance, degree: int | None, output: Path | 
         for axis, given in enumerate(spline.degree):
             spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
         reduction = kw.reduce(spline, allowed, progress=progress)
-        return reduction.spline, float(reduction.bound)
+        return _flipped(reduction.spline) if flip else reduction.spline, float(reduction.bound)
 
     _change(file, output, (), as_json, change, tolerance, "reducing")
 
@@ -208,9 +213,10 @@ def bezier(file: Path, output: Path, as_json: bool) -> None:
 @main.command(short_help="Convert between file formats.")
 @click.argument("files", type=FILE, nargs=-1, required=True)
 @click.option("--accuracy", type=float, help="Largest error, in the units of the points, if the format is not exact.")
+@flip
 @output
 @as_json
-def convert(files: Sequence[Path], accuracy: float | None, output: Path, as_json: bool) -> None:
+def convert(files: Sequence[Path], accuracy: float | None, flip: bool, output: Path, as_json: bool) -> None:
     """Write the splines of FILES, all together, to a file of another format.
 
     \b
@@ -220,7 +226,8 @@ def convert(files: Sequence[Path], accuracy: float | None, output: Path, as_json
     from knotwork.files import write
 
     _require_writable(output)
-    written = write(output, [s for path in files for s in _read(path)], accuracy=accuracy)
+    splines = [s for path in files for s in _read(path)]
+    written = write(output, [_flipped(s) for s in splines] if flip else splines, accuracy=accuracy)
     if as_json:
         _print_json({"output": str(output), "splines": written.count, "bound": written.bound})
     else:
@@ -238,20 +245,17 @@ def convert(files: Sequence[Path], accuracy: float | None, output: Path, as_json
 def plot(
     file: Path, before: Path | None, control: bool, knots: bool, size: tuple[float, float], dpi: float, output: Path
 ) -> None:
-    """Draw the splines of FILE, with control points and knots.
+    """Draw the splines of FILE, with control points and knots; those of .svg files with y pointing down.
 
     \b
     Examples:
       knotwork plot drawing.svg -o drawing.png
       knotwork plot small.svg --before drawing.svg --size 10 10 -o both.pdf
     """
+    _require_writable(output, _picture_suffixes())
     splines, under = _read(file), _read(before) if before else None
-    if output.exists() and any(path and path.exists() and path.samefile(output) for path in (file, before)):
+    if output.exists() and any(path and path.samefile(output) for path in (file, before)):
         raise Failure(f"{output}: the picture would replace the splines; give it another name")
-    _require_writable(output, pictures=True)
-    import matplotlib
-
-    matplotlib.use("agg")
     from knotwork.files.storage import replace
     from knotwork.plotting import plot as draw
 
@@ -299,7 +303,10 @@ def _change(
             size = splines[i].coefficients.size
             start = time.perf_counter()
             tell = [lambda part, size=size: progress.update(part * size)] if working else []
-            changed[i], bound = change(splines[i], *allowed, *tell)
+            try:
+                changed[i], bound = change(splines[i], *allowed, *tell)
+            except KnotworkError as exc:
+                raise Failure(f"{file}: spline {i}: {exc}") from exc
             rows.append(_row(i, splines[i], changed[i], bound, time.perf_counter() - start))
             progress.finish(size)
     finally:
@@ -341,15 +348,18 @@ def _in_bezier_form(spline: Spline) -> Spline:
     return spline
 
 
+def _flipped(spline: Spline) -> Spline:
+    """Return the spline with y turned over."""
+    if spline.dim < 2:
+        raise Failure(f"--flip: points in {spline.dim}-D have no y")
+    return spline.transform([[(i == j) * (-1) ** (i == 1) for j in range(spline.dim)] for i in range(spline.dim)])
+
+
 def _extent(splines: Sequence[Spline]) -> float:
     """Return the longest side of the box that holds all splines."""
     bounds = [s.bounds for s in splines]
-    return float(
-        max(
-            max(b[1][k] for b in bounds if k < b.shape[1]) - min(b[0][k] for b in bounds if k < b.shape[1])
-            for k in range(max(b.shape[1] for b in bounds))
-        )
-    )
+    sides = ([b[:, k] for b in bounds if k < b.shape[1]] for k in range(max(s.dim for s in splines)))
+    return float(max(max(high for _, high in side) - min(low for low, _ in side) for side in sides))
 
 
 def _read(path: Path) -> list[Spline]:
@@ -358,18 +368,22 @@ def _read(path: Path) -> list[Spline]:
     return read(path)
 
 
-def _require_writable(output: Path, pictures: bool = False) -> None:
-    """Raise before the work if a file of this name could not be written after it."""
-    if pictures:
-        try:
-            from matplotlib.backend_bases import FigureCanvasBase
-        except ImportError as exc:
-            raise Failure("pictures need matplotlib: pip install 'knotwork[plot]'") from exc
-        known = sorted(f".{name}" for name in FigureCanvasBase.get_supported_filetypes())
-    else:
-        from knotwork.files import FORMATS
+def _picture_suffixes() -> list[str]:
+    """Return what pictures can be written, and make matplotlib draw without a screen."""
+    try:
+        import matplotlib
+        from matplotlib.backend_bases import FigureCanvasBase
+    except ImportError as exc:
+        raise MissingExtraError("pictures need matplotlib: pip install 'knotwork[plot]'") from exc
+    matplotlib.use("agg")
+    return sorted(f".{name}" for name in FigureCanvasBase.get_supported_filetypes())
 
-        known = list(FORMATS)
+
+def _require_writable(output: Path, suffixes: Sequence[str] = ()) -> None:
+    """Raise before the work if a file of this name could not be written after it."""
+    from knotwork.files import FORMATS
+
+    known = suffixes or list(FORMATS)
     if output.suffix.lower() not in known:
         raise Failure(f"{output}: unknown suffix {output.suffix!r}; expected one of {', '.join(known)}")
     if output.is_dir():
