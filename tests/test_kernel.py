@@ -1,0 +1,308 @@
+"""Kernels: one source, plain and compiled alike bit for bit; when it is compiled; the cache never lies."""
+
+from __future__ import annotations
+
+import copy
+import importlib
+import os
+import pkgutil
+import stat
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import knotwork as kw
+from knotwork import kernel as kernels
+from knotwork.kernel import Kernel
+
+SOURCE = Path(kw.__file__).parent.parent
+
+
+def run(code, tmp_path=None, **environment):
+    """Run Python code in a fresh process and return what it printed."""
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, filter(None, [tmp_path, SOURCE]))), **environment}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", textwrap.dedent(code)],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+# ---- plain and compiled -------------------------------------------------------------------------------------------
+
+
+def same(a, b):
+    """Tell whether two results have the same bits."""
+    if isinstance(a, tuple):
+        return len(a) == len(b) and all(map(same, a, b))
+    return np.asarray(a).tobytes() == np.asarray(b).tobytes()
+
+
+@pytest.fixture
+def both(monkeypatch):
+    """Let every call of a kernel run plain and compiled on copies of its arguments; return the kernels called."""
+    called = set()
+
+    def call(self, *args):
+        if any(isinstance(a, np.ndarray) and a.dtype == object for a in args):
+            return self.plain(*args)
+        plain, compiled = copy.deepcopy(args), copy.deepcopy(args)
+        with np.errstate(all="ignore"):
+            result = self.plain(*plain)
+        other = self.compiled(*compiled)
+        assert (result is None and other is None) or same(result, other), f"{self} returns {result} and {other}"
+        for i, (given, x, y) in enumerate(zip(args, plain, compiled, strict=True)):
+            if isinstance(given, np.ndarray):
+                assert same(x, y), f"{self}: argument {i} differs:\n{x}\n{y}"
+                if given.flags.writeable:
+                    given[...] = x
+        called.add(self)
+        return result
+
+    monkeypatch.setattr(Kernel, "__call__", call)
+    return called
+
+
+def points(rng, dtype, *shape):
+    """Return numbers that need all their bits, so that each rounding shows."""
+    P = rng.standard_normal(shape)
+    return (P + 1j * rng.standard_normal(shape) if dtype is np.complex128 else P).astype(dtype)
+
+
+def curves(dtype):
+    """Yield curves of many kinds. Each number of coordinates is compiled anew, so there are few."""
+    rng = np.random.default_rng(0)
+    for degree in (0, 1, 2, 3, 5):
+        inner = np.sort(rng.random(9))
+        if degree:
+            inner[3:5] = inner[3]
+        knots = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
+        yield kw.curve(points(rng, dtype, degree + 10, 2), degree, knots)
+        around = np.concatenate([[0.0], inner, [1.0]])
+        yield kw.curve(points(rng, dtype, 10, 2), degree, around, periodic=True)
+        unclamped = np.sort(rng.random(2 * degree + 8)) * 3
+        if dtype is np.complex128:
+            yield kw.curve(points(rng, dtype, degree + 7, 2), degree, unclamped)
+        else:
+            yield kw.curve(points(rng, dtype, degree + 7, 1), degree, unclamped, weights=1 + rng.random(degree + 7))
+    if dtype is np.float64:
+        yield kw.curve(points(rng, dtype, 9, 6), 4)  # more coordinates than are unrolled
+
+
+def work_on(spline, axis=0):
+    """Do to a spline all that the library does."""
+    space = spline.spaces[axis]
+    a, b = (float(x) for x in space.domain)
+    inside = a + (b - a) * np.random.default_rng(1).random(12)
+    middle = float(inside[0])
+    kw.insert(spline, middle, axis=axis)
+    for new in (inside[:2], np.repeat(inside[:2], space.order), inside):
+        kw.insert(spline, new, axis=axis)
+    kw.insertion_matrix(space, space.with_knots(inside))
+    kw.split(spline, middle, axis=axis)
+    kw.elevate(spline, 2, axis=axis)
+    kw.to_bezier(spline)
+    u = [inside] * len(spline.spaces)
+    spline(*u)
+    spline(*u, grid=True)
+    spline.derivatives(*u, 2)
+    if not spline.rational:
+        spline.derivative(axis=axis)
+        spline.antiderivative(axis=axis)
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32, np.complex128])
+def test_plain_and_compiled_agree_on_curves(both, dtype):
+    for curve in curves(dtype):
+        work_on(curve)
+
+
+def test_plain_and_compiled_agree_on_surfaces(both):
+    rng = np.random.default_rng(3)
+    for shape, closed in (((6, 7, 2), (False, False)), ((6, 5, 2), (True, False))):
+        surface = kw.surface(rng.standard_normal(shape), degree=(2, 3), periodic=closed)
+        for axis in (0, 1):
+            work_on(surface, axis)
+
+
+def test_plain_and_compiled_agree_on_removal(both):
+    rng = np.random.default_rng(4)
+    for curve in curves(np.float64):
+        if curve.degree[0] and not curve.space.periodic and not curve.rational:
+            new = np.linspace(*map(float, curve.space.domain), 7)[1:-1]
+            refined = kw.insert(curve, new)
+            kw.remove(refined, new, tolerance=1e-9)
+    line = kw.curve(rng.standard_normal((40, 2)).cumsum(axis=0), degree=1)
+    kw.reduce(line, 0.5)
+
+
+def test_every_kernel_is_tried(both):
+    """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
+    for module in pkgutil.walk_packages(kw.__path__, "knotwork."):
+        if module.name.rpartition(".")[2] != "__main__":
+            importlib.import_module(module.name)
+    test_plain_and_compiled_agree_on_curves(both, np.float64)
+    test_plain_and_compiled_agree_on_surfaces(both)
+    test_plain_and_compiled_agree_on_removal(both)
+    reached = set(both)
+    while below := {callee for caller in reached for _, callee in caller._callees()} - reached:
+        reached |= below
+    missing = [k for k in kernels.KERNELS if k not in reached and k.source.__module__.startswith("knotwork.")]
+    assert not missing
+
+
+# ---- when it is compiled ------------------------------------------------------------------------------------------
+
+SMALL = """
+    import sys
+    import knotwork as kw
+    c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    kw.insert(kw.insert(c, [0.25, 0.75]), 0.5)(0.3)
+    print("numba" in sys.modules)
+"""
+
+
+def test_import_loads_nothing_heavy():
+    heavy = ["numba", "scipy", "matplotlib", "svgelements", "llvmlite", "click"]
+    assert run(f"import sys, knotwork; print([m for m in {heavy} if m in sys.modules])") == "[]"
+
+
+@pytest.mark.parametrize(("mode", "loaded"), [("auto", "False"), ("never", "False"), ("always", "True")])
+def test_small_work_stays_plain(mode, loaded):
+    assert run(SMALL, KNOTWORK_JIT=mode) == loaded
+
+
+@pytest.mark.parametrize(("mode", "loaded"), [("auto", "True"), ("never", "False")])
+def test_large_work_is_compiled(mode, loaded):
+    code = """
+        import sys
+        import numpy as np, knotwork as kw
+        n = 200_000 if sys.argv[-1] != "never" else 1000
+        kw.insert(kw.curve(np.zeros((n, 3))), [0.2, 0.3])
+        print("numba" in sys.modules)
+    """
+    assert run(code.replace("sys.argv[-1]", repr(mode)), KNOTWORK_JIT=mode) == loaded
+
+
+def test_an_unknown_mode_is_an_error():
+    code = """
+        try:
+            import knotwork
+        except ValueError as error:
+            print(error)
+    """
+    message = run(code, KNOTWORK_JIT="sometimes")
+    assert "KNOTWORK_JIT" in message
+    assert "'sometimes'" in message
+    assert "auto, always, never" in message
+
+
+def test_modes_give_the_same_bits():
+    code = """
+        import hashlib
+        import numpy as np, knotwork as kw
+        rng = np.random.default_rng(0)
+        c = kw.insert(kw.curve(rng.standard_normal((30, 3))), rng.random(40))
+        print(hashlib.sha256(c.coefficients.tobytes() + c(rng.random(50)).tobytes()).hexdigest())
+    """
+    assert run(code, KNOTWORK_JIT="never") == run(code, KNOTWORK_JIT="always")
+
+
+def test_overflow_is_as_silent_plain_as_compiled():
+    code = """
+        import knotwork as kw
+        c = kw.curve([1e300, -1e300, 1e300, -1e300])
+        print(c(1e10, extrapolate=True))
+    """
+    assert run(code, KNOTWORK_JIT="never") == run(code, KNOTWORK_JIT="auto") == run(code, KNOTWORK_JIT="always")
+
+
+# ---- the cache ----------------------------------------------------------------------------------------------------
+
+ABOVE = """
+    from knotwork.kernel import kernel
+    from edited.below import term
+    FACTOR = {factor}
+
+    @kernel
+    def total(x):
+        s = 0.0
+        for i in range(len(x)):
+            s = s + FACTOR * term(x[i])
+        return s
+"""
+BELOW = """
+    from knotwork.kernel import kernel
+
+    @kernel
+    def term(x):
+        return x {operation}
+"""
+
+
+def write_package(tmp_path, operation="+ 1", factor=1):
+    """Write a package of two kernels in two files, one calling the other."""
+    package = tmp_path / "edited"
+    package.mkdir(exist_ok=True)
+    (package / "__init__.py").touch()
+    (package / "above.py").write_text(textwrap.dedent(ABOVE.format(factor=factor)))
+    (package / "below.py").write_text(textwrap.dedent(BELOW.format(operation=operation)))
+    for path in package.glob("*.py"):  # not even the time of the file tells
+        os.utime(path, (1, 1))
+
+
+def call_package(tmp_path, cache):
+    """Call the kernel compiled in a fresh process; return its digest, its result and how often the cache was hit."""
+    code = """
+        import numpy as np
+        from edited.above import total
+        print(total.digest, total(np.array([1.0, 2.0])), sum(total.compiled.stats.cache_hits.values()))
+    """
+    out = run(code, tmp_path, KNOTWORK_JIT="always", KNOTWORK_CACHE=str(cache), PYTHONDONTWRITEBYTECODE="1")
+    digest, value, hits = out.split()
+    return digest, float(value), int(hits)
+
+
+def test_editing_what_a_kernel_calls_or_uses_is_seen(tmp_path):
+    digests = []
+    for operation, factor, expected in (("+ 1", 1, 5.0), ("* 10", 1, 30.0), ("* 10", 3, 90.0), ("+ 1", 1, 5.0)):
+        write_package(tmp_path, operation, factor)
+        digest, value, hits = call_package(tmp_path, tmp_path / "cache")
+        assert value == expected
+        assert hits == digests.count(digest)  # what was compiled before is found again
+        digests.append(digest)
+    assert len(set(digests)) == 3
+
+
+@pytest.mark.parametrize("kind", ["a file", "read-only", "below a file"])
+def test_without_a_writable_cache_it_compiles_all_the_same(tmp_path, kind):
+    place = tmp_path / "cache"
+    if kind == "read-only":
+        place.mkdir()
+        place.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    else:
+        place.write_text("not a directory")
+    write_package(tmp_path)
+    _, value, hits = call_package(tmp_path, place / "deeper" if kind == "below a file" else place)
+    assert (value, hits) == (5.0, 0)
+    assert not list((tmp_path / "edited").rglob("*.nb?"))  # nor beside the source
+    assert kind == "read-only" or place.read_text() == "not a directory"
+
+
+def test_a_variant_binds_names_anew(monkeypatch):
+    monkeypatch.setattr(kernels, "KERNELS", [])
+    up, down = kernels.kernel(lambda x: x + 1), kernels.kernel(lambda x: x - 1)
+    monkeypatch.setitem(globals(), "step", up)
+    twice = kernels.kernel(lambda x: step(step(x)))  # noqa: F821
+    assert twice.plain(3) == 5
+    variant = twice.variant(step=down)
+    assert variant.plain(3) == 1
+    assert variant.digest != twice.digest
