@@ -1,0 +1,23 @@
+"""Parameters from lengths: knots that follow a curve at even speed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from knotwork.numbers import Array
+
+
+def increasing(lengths: Array) -> Array:
+    """Return 0 and the sums of the first 1, 2, … lengths, each (if finite) at least the next float after the last.
+
+    So breaks differ where points do, even where a length is lost in rounding.
+    """
+    with np.errstate(over="ignore"):
+        t = np.concatenate([[0.0], np.cumsum(lengths)])
+    if not np.isfinite(t[-1]):
+        return t
+    for i in np.flatnonzero(t[1:] <= t[:-1]) + 1:
+        while i < len(t) and t[i] <= t[i - 1]:
+            t[i] = np.nextafter(t[i - 1], np.inf)
+            i += 1
+    return t

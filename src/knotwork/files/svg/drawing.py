@@ -1,0 +1,104 @@
+"""Curves as an SVG document: one path a spline, in cubic, quadratic and straight segments."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from knotwork.errors import FileError
+from knotwork.files.svg.cubics import cubics
+from knotwork.insertion import to_bezier
+from knotwork.numbers import Array
+from knotwork.spline import Spline
+
+#: accuracy unless one is asked for, as a part of the extent of the drawing
+RELATIVE = 1e-5
+#: no accuracy below this part of the largest coordinate can be proven in float64
+LEAST = 1e-13
+_MARGIN = 0.02
+_LETTER = {1: "L", 2: "Q", 3: "C"}
+
+
+def encode(splines: list[Spline], accuracy: float | None) -> tuple[bytes, float]:
+    """Return the document, and how far the paths are from the splines at most.
+
+    Degrees 1 to 3 are written as they are. Higher degrees and rational curves are written as cubics within `accuracy`.
+    """
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # infinity is found and refused
+        drawn, box = _drawn(splines, accuracy)
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{" ".join(map(repr, box))}">',
+        '<g fill="none" stroke="black" stroke-width="1">',
+        *(f'<path vector-effect="non-scaling-stroke" d="{d}"/>' for d, _ in drawn),
+        "</g>",
+        "</svg>",
+    ]
+    return "\n".join([*lines, ""]).encode(), max(bound for _, bound in drawn)
+
+
+def _drawn(splines: list[Spline], accuracy: float | None) -> tuple[list[tuple[str, float]], list[float]]:
+    """Return path data and bound for each spline, and the view box: a little more than what is drawn."""
+    nets = [_pieces(spline, f"splines[{i}]") for i, spline in enumerate(splines)]
+    corners = np.array([f(points[..., :2] / points[..., 2:], axis=(0, 1)) for points in nets for f in (np.min, np.max)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    extent = float((high - low).max())
+    if not np.isfinite(extent):
+        raise FileError("the drawing reaches beyond float64")
+    least = LEAST * float(np.abs(corners).max())
+    if accuracy is None:
+        accuracy = max(RELATIVE * extent, least)
+    elif accuracy < least:
+        raise FileError(f"accuracy {accuracy} given; for coordinates this large expected at least {least:.2g}")
+    drawn = [_path(spline, points, accuracy) for spline, points in zip(splines, nets, strict=True)]
+    margin = _MARGIN * extent or 1.0
+    return drawn, [*(low - margin).tolist(), *(high - low + 2 * margin).tolist()]
+
+
+def _pieces(spline: Spline, place: str) -> Array:
+    """Return the Bézier points of a plane curve, homogeneous floats."""
+    if spline.parameters != 1 or spline.scalar or spline.dim != 2 or spline.coefficients.dtype.kind == "c":
+        raise FileError(f"{place} is a {str(spline)[1:-1]}; .svg holds real curves in the plane")
+    if spline.space.degree == 0:
+        raise FileError(f"{place} has degree 0; .svg holds curves of degree 1 and up")
+    nets, breaks = to_bezier(spline)
+    try:
+        nets = nets.astype(np.float64)
+    except (OverflowError, TypeError) as exc:
+        raise FileError(f"{place} has numbers that do not fit in float64: {exc}") from None
+    if not spline.rational:
+        nets = np.concatenate([nets, np.ones((*nets.shape[:-1], 1))], axis=-1)
+    # where the curve has no jump, pieces meet; what rounding says otherwise is not drawn as a gap
+    t, x = spline.space.knots, breaks[:-1]
+    joins = np.searchsorted(t, x, "right") - np.searchsorted(t, x, "left") <= spline.space.degree
+    nets[1:, 0] = np.where(joins[1:, None], nets[:-1, -1], nets[1:, 0])
+    if spline.space.periodic and joins[0]:
+        nets[-1, -1] = nets[0, 0]
+    if not (np.isfinite(nets).all() and (nets[..., 2] > 0).all()):
+        raise FileError(f"{place} reaches beyond float64")
+    return nets
+
+
+def _path(spline: Spline, nets: Array, accuracy: float) -> tuple[str, float]:
+    """Return path data, and the bound of its error."""
+    bound = 0.0
+    if spline.rational or spline.space.degree > 3:
+        pieces, bound = cubics(nets, accuracy)
+    else:
+        pieces = nets[..., :2]
+    letter = _LETTER[pieces.shape[1] - 1]
+    rows = pieces.tolist()
+    whole = spline.space.periodic
+    here = None
+    segments = []
+    for start, *rest in rows:
+        if start != here:
+            whole = whole and here is None
+            segments.append(f"M{_numbers([start])}")
+        segments.append(letter + _numbers(rest))
+        here = rest[-1]
+    if whole and here == rows[0][0]:
+        segments.append("Z")
+    return " ".join(segments), bound
+
+
+def _numbers(points: list[list[float]]) -> str:
+    return " ".join(f"{x!r},{y!r}" for x, y in points)

@@ -1,0 +1,80 @@
+"""Curves from outlines: each subpath one spline of the lowest degree that holds all its pieces."""
+
+from __future__ import annotations
+
+from itertools import chain
+
+import numpy as np
+
+from knotwork.errors import FileError
+from knotwork.files.lengths import increasing
+from knotwork.files.svg.notation import Affine
+from knotwork.files.svg.pathdata import Subpath
+from knotwork.numbers import Array
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+
+def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
+    """Return the curve of each subpath under a map of the plane; one that goes nowhere is no curve."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = [_curve(path, place) for path in paths if path.pieces]
+    return [curve for curve in found if curve is not None]
+
+
+def _curve(path: Subpath, place: Affine) -> Spline | None:
+    nets = _mapped(_nets(path), place)
+    if not np.isfinite(nets).all():
+        raise FileError("the outline reaches beyond float64")
+    steps = np.hypot(*(nets[:, 1:] - nets[:, :-1]).T).T
+    polygon = steps.sum(axis=1)
+    nets, polygon = nets[polygon > 0], polygon[polygon > 0]
+    if not len(nets):
+        return None
+    chord = np.hypot(*(nets[:, -1] - nets[:, 0]).T)
+    t = increasing(chord / 2 + polygon / 2)
+    if not np.isfinite(t[-1]):
+        raise FileError("the outline is longer than float64 can say")
+    return _joined(nets, t, path.closed)
+
+
+def _joined(nets: Array, t: Array, closed: bool) -> Spline:
+    """Return the curve of joining Bézier pieces over the breaks t; joins have a multiplicity equal to the degree.
+
+    Control point kn + r - 1 is the blossom at n - r times t_k and r times t_{k+1}: point r of piece k. A periodic
+    curve takes r = 1 … n; an open one has point 0 of the first piece before.
+    """
+    n = nets.shape[1] - 1
+    points = nets[:, 1:].reshape(-1, 2)
+    if closed:
+        return Spline(SplineSpace(n, np.append(np.repeat(t[:-1], n), t[-1]), periodic=True), points)
+    knots = np.concatenate([t[:1], np.repeat(t, n), t[-1:]])
+    return Spline(SplineSpace(n, knots), np.concatenate([nets[0, :1], points]))
+
+
+def _nets(path: Subpath) -> Array:
+    """Return the Bézier points of all pieces, shape (pieces, degree + 1, 2), those of lower degree raised."""
+    degrees = np.array([len(piece) for piece in path.pieces])
+    ends = np.array([path.start, *(piece[-1] for piece in path.pieces)])
+    n = int(degrees.max())
+    nets = np.empty((len(degrees), n + 1, 2))
+    for degree in set(degrees.tolist()):
+        chosen = np.flatnonzero(degrees == degree)
+        after = np.array([*chain.from_iterable(path.pieces[i] for i in chosen)]).reshape(-1, degree, 2)
+        nets[chosen] = raised(np.concatenate([ends[chosen, None], after], axis=1), n)
+    return nets
+
+
+def raised(nets: Array, n: int) -> Array:
+    """Return Bézier points of degree n for the same curves: Q_i = (1 - i/m) P_i + i/m P_{i-1}, for each m up to n."""
+    for m in range(nets.shape[1], n + 1):
+        share = (np.arange(1, m) / m)[:, None]
+        inner = (1 - share) * nets[:, 1:] + share * nets[:, :-1]
+        nets = np.concatenate([nets[:, :1], inner, nets[:, -1:]], axis=1)
+    return nets
+
+
+def _mapped(nets: Array, place: Affine) -> Array:
+    a, b, c, d, e, f = place
+    x, y = nets[..., 0], nets[..., 1]
+    return np.stack([a * x + c * y + e, b * x + d * y + f], axis=-1)

@@ -1,0 +1,69 @@
+"""Which elements are shown: `display` and `visibility`, from attributes, style attributes and style sheets."""
+
+from __future__ import annotations
+
+import re
+
+from knotwork.files.svg.tree import Element
+
+_SELECTOR = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
+_PART = re.compile(r"[.#][\w-]+")
+_PROPERTIES = ("display", "visibility")
+
+
+class Styles:
+    """The rules of all style sheets that say whether something is shown.
+
+    Selectors of one element are understood (``*``, ``path``, ``.class``, ``#id``, ``path.class``); others, which
+    would ask where the element stands, are passed over.
+    """
+
+    def __init__(self, root: Element) -> None:
+        self.rules: list[tuple[tuple[int, int, int], str, set[str], dict[str, str]]] = []
+        for sheet in _sheets(root):
+            for rule in _without_comments(sheet).split("}"):
+                selectors, _, body = rule.rpartition("{")
+                declared = _declarations(body)
+                for selector in selectors.split(",") if declared else ():
+                    match = _SELECTOR.fullmatch(selector.strip())
+                    if match:
+                        tag, parts = match[1] or "*", _PART.findall(match[2])
+                        rank = (sum(p[0] == "#" for p in parts), len(parts), tag != "*")
+                        self.rules.append((rank, tag, set(parts), declared))
+        self.rules.sort(key=lambda rule: rule[0])
+
+    def value(self, element: Element, name: str) -> str:
+        """Return what a property of an element is set to; '' if it is not."""
+        own = _declarations(element.attributes.get("style", "")).get(name)
+        if own:
+            return own
+        value = element.attributes.get(name, "").strip()
+        if self.rules:
+            names = {f".{name}" for name in element.attributes.get("class", "").split()}
+            names.add(f"#{element.attributes.get('id')}")
+            for _, tag, parts, declared in self.rules:
+                if tag in ("*", element.tag) and parts <= names:
+                    value = declared.get(name, value)
+        return value
+
+
+def _sheets(element: Element) -> list[str]:
+    """Return the texts of all style elements."""
+    found = [element.text] if element.tag == "style" else []
+    for child in element.children:
+        found += _sheets(child)
+    return found
+
+
+def _without_comments(text: str) -> str:
+    first, *others = text.split("/*")
+    return " ".join([first, *(part.partition("*/")[2] for part in others)])
+
+
+def _declarations(text: str) -> dict[str, str]:
+    found = {}
+    for declaration in text.split(";"):
+        name, _, value = declaration.partition(":")
+        if name.strip().lower() in _PROPERTIES:
+            found[name.strip().lower()] = value.partition("!")[0].strip().lower()
+    return found
