@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from knotwork.errors import ParameterError
-from knotwork.kernel import kernel
+from knotwork.kernel import extent, kernel
 from knotwork.knots import in_arithmetic_of
 from knotwork.numbers import Array, all_finite, empty, numbers
 from knotwork.space import SplineSpace
@@ -60,21 +60,20 @@ def locate(t, table, first, last, u, span):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def basis(t, n, span, u, E):  # type: ignore[no-untyped-def]
+def basis(t, K, R, span, u, E):  # type: ignore[no-untyped-def]
     """E[r, i, j] = r-th derivative at u[i] of basis function span[i]-n+j (Cox, de Boor, Mansfield).
 
-    The triangle is that of §2.2 read top-down: level n-r starts the derivative of order r, and the two-term
-    derivative formula takes it from there to level n.
+    K and R are as long as the degree and the number of orders. The triangle is that of §2.2 read top-down: its level
+    n-r starts the derivative of order r, and the two-term derivative formula takes that from there to level n.
     """
-    orders = len(E)
+    n, top = len(K), min(len(K), len(R) - 1)
     for i in range(len(span)):
         q, x = span[i], u[i]
         E[0, i, 0] = x - x + 1
         for k in range(1, n + 1):
-            r = n - k + 1
-            if r < orders:
+            if n - k + 1 <= top:
                 for j in range(k):
-                    E[r, i, j] = E[0, i, j]
+                    E[n - k + 1, i, j] = E[0, i, j]
             saved = x - x
             for j in range(k):
                 left, right = t[q - k + 1 + j], t[q + 1 + j]
@@ -82,18 +81,20 @@ def basis(t, n, span, u, E):  # type: ignore[no-untyped-def]
                 E[0, i, j] = saved + (E[0, i, j] - b)
                 saved = b
             E[0, i, k] = saved
-        for r in range(1, orders):
-            if r > n:
-                for j in range(n + 1):
-                    E[r, i, j] = x - x
-            else:
-                for k in range(n - r + 1, n + 1):
-                    saved = x - x
-                    for j in range(k):
-                        b = k * E[r, i, j] / (t[q + 1 + j] - t[q - k + 1 + j])
-                        E[r, i, j] = saved - b
-                        saved = b
-                    E[r, i, k] = saved
+        for k in range(n - top + 1, n + 1):  # downwards in place: f and g are those of j and j - 1
+            f = k / (t[q + k] - t[q])
+            for r in range(n - k + 1, top + 1):
+                E[r, i, k] = f * E[r, i, k - 1]
+            for j in range(k - 1, 0, -1):
+                g = k / (t[q + j] - t[q - k + j])
+                for r in range(n - k + 1, top + 1):
+                    E[r, i, j] = g * E[r, i, j - 1] - f * E[r, i, j]
+                f = g
+            for r in range(n - k + 1, top + 1):
+                E[r, i, 0] = -f * E[r, i, 0]
+        for r in range(n + 1, len(R)):
+            for j in range(n + 1):
+                E[r, i, j] = x - x
 
 
 @kernel
@@ -116,7 +117,7 @@ class Basis:
         self.space = space
         self.t, zero = space.unrolled
         self.first = zero if space.periodic else n
-        self.last = int(np.searchsorted(self.t, space.domain[1], "left")) - 1
+        self.last = space.cached("last", lambda: int(np.searchsorted(self.t, space.domain[1], "left")) - 1)
         if count < (self.last - self.first) // 8:
             self.table = np.array([self.first, self.last])
         else:
@@ -133,7 +134,7 @@ class Basis:
         locate(self.t, self.table, self.first, self.last, u, span)
         n = self.space.degree
         E = empty((order + 1, len(u), n + 1), self.t.dtype)
-        basis(self.t, n, span, u, E)
+        basis(self.t, extent(n), extent(order + 1), span, u, E)
         if self.space.periodic:
             return (span - self.first - n) % self.space.dimension, E
         span -= n

@@ -30,7 +30,7 @@ LOADING_PAYS = 0.4
 #: seconds of plain work per array element, roughly: what a kernel is expected to cost before it is timed
 PER_ELEMENT = 0.35e-6
 #: dimensions up to this one are known to the compiler, which unrolls the loops over them
-UNROLLED = 4
+UNROLLED = 5
 
 #: how Numba compiles: kernels called by kernels are inlined, and no rule of arithmetic is relaxed
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True}

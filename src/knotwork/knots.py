@@ -71,11 +71,17 @@ def require_multiplicity(knots: Array, degree: int) -> None:
 
 
 @kernel
+def old_is_next(U, j, W, k, stop):  # type: ignore[no-untyped-def]
+    """Tell whether U[j] precedes W[k] in the merge: of equals old first, but what is left of W before U[stop]."""
+    return k >= len(W) or (j < stop and U[j] <= W[k])
+
+
+@kernel
 def merge(U, W, T):  # type: ignore[no-untyped-def]
     """T = all of the sorted U and W, sorted."""
     j = k = 0
     for i in range(len(T)):
-        if k >= len(W) or (j < len(U) and U[j] <= W[k]):
+        if old_is_next(U, j, W, k, len(U)):
             T[i] = U[j]
             j += 1
         else:

@@ -76,6 +76,12 @@ def require_finite(array: Array, what: str, error: type[KnotworkError]) -> None:
 
 def empty(shape: tuple[int, ...], dtype: Any) -> Array:
     """Allocate an array, or say how large it would have been."""
+    require_room(shape, dtype)
+    return np.empty(shape, dtype)
+
+
+def require_room(shape: tuple[int, ...], dtype: Any) -> None:
+    """Raise `SizeError` if an array would not fit in memory."""
     size = np.dtype(dtype).itemsize
     for count in shape:
         size *= int(count)
@@ -84,7 +90,6 @@ def empty(shape: tuple[int, ...], dtype: Any) -> Array:
             f"the result would be {' × '.join(map(str, shape))} numbers ({size / 1e9:.3g} GB); "
             f"this machine has {_physical_memory() / 1e9:.3g} GB"
         )
-    return np.empty(shape, dtype)
 
 
 def _physical_memory() -> int:

@@ -295,4 +295,4 @@ def _axes(ax: Axes | None, spatial: bool) -> Axes:
 def _size(splines: list[Spline], size: float) -> float:
     """Return a marker size that falls with the number of markers."""
     count = sum(int(np.prod([space.dimension for space in s.spaces])) for s in splines)
-    return float(size * np.clip((60 / count) ** 0.3, 0.25, 1))
+    return float(size * np.clip((60 / count) ** 0.5, 0.2, 1))

@@ -20,7 +20,7 @@ from knotwork.knots import (
     sorted_knots,
     turned,
 )
-from knotwork.numbers import Array, empty, exact, numbers
+from knotwork.numbers import Array, exact, numbers, require_room
 
 _set = object.__setattr__
 
@@ -363,7 +363,7 @@ def _require_dimension(degree: int, n: int, least: int) -> None:
         raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
     if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < least:
         raise ParameterError(f"dimension {n!r} given; degree {degree} needs at least {least}")
-    empty((n + 2 * degree + 2,), np.float64)
+    require_room((n + 2 * degree + 2,), np.float64)
 
 
 def _even(spans: int) -> Array:

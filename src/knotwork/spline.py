@@ -9,11 +9,12 @@ from typing import Any, Self
 
 import numpy as np
 
-from knotwork.banded import Banded
+from knotwork.banded import Banded, apply_rows
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import CHUNK, Basis, contract, parameters
 from knotwork.kernel import extent
 from knotwork.numbers import Array, empty, exact, numbers, require_finite
+from knotwork.parallel import in_parts
 from knotwork.space import Frozen, SplineSpace
 
 _set = object.__setattr__
@@ -132,11 +133,12 @@ class Spline(Frozen):
         """The control points, never multiplied by weights; shape (n1, …, nk, d), or (n1, …, nk) if scalar."""
         if not self.rational:
             return self.coefficients
-        if self._points is None:
+        plain = self._points
+        if plain is None:
             plain = self.coefficients[..., :-1] / self.coefficients[..., -1:]
             plain.setflags(write=False)
             _set(self, "_points", plain)
-        return self._points
+        return plain
 
     @property
     def weights(self) -> Array | None:
@@ -244,7 +246,7 @@ class Spline(Frozen):
             raise ParameterError(f"{len(u)} parameters given; this spline has {len(self.spaces)}")
 
     def _scattered(self, x: list[Array], orders: tuple[int, ...]) -> Array:
-        """Return coefficients' derivatives at points with broadcast parameters, a chunk at a time."""
+        """Return derivatives at points with broadcast parameters, a chunk at a time."""
         k = len(x)
         try:
             wide = np.broadcast_arrays(*x) if k > 1 else x
@@ -252,23 +254,33 @@ class Spline(Frozen):
             raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
         shape, count = wide[0].shape, wide[0].size
         flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
-        tail = self.coefficients.shape[k:]
         B = self._width
-        dtype = self.coefficients.dtype
-        out = empty((*(r + 1 for r in orders), count, B), dtype)
+        out = empty((*(r + 1 for r in orders), count, B), self.coefficients.dtype)
         bases = [Basis(space, count) for space in self.spaces]
         P = self._padded().reshape(-1, B)
-        strides = self._padded_strides()
-        D = extent(B)
+
+        def part(start: int, stop: int) -> None:
+            for lo in range(start, stop, CHUNK):
+                some = slice(lo, min(lo + CHUNK, stop))
+                rows = [basis.rows(v[some], r) for basis, v, r in zip(bases, flat, orders, strict=True)]
+                if k == 1:
+                    for values, E in zip(out, rows[0][1], strict=True):
+                        apply_rows(rows[0][0], E, P[None], values[None, some], extent(B))
+                else:
+                    self._contract(P, rows, orders, out[..., some, :])
+
+        in_parts(part, count, count * sum(space.order for space in self.spaces))
+        return out.reshape(*out.shape[:k], *shape, *self.coefficients.shape[k:])
+
+    def _contract(self, P: Array, rows: list[tuple[Array, Array]], orders: tuple[int, ...], out: Array) -> None:
+        """Fill out[orders, point] from the basis functions along each axis at each point."""
+        counts = [space.dimension + space.degree * space.periodic for space in self.spaces]
+        strides = [math.prod(counts[axis + 1 :]) for axis in range(len(counts))]
         offset = _outer_sum([np.arange(space.order) * s for space, s in zip(self.spaces, strides, strict=True)])
-        for lo in range(0, count, CHUNK):
-            part = slice(lo, lo + CHUNK)
-            rows = [basis.rows(v[part], r) for basis, v, r in zip(bases, flat, orders, strict=True)]
-            base = sum(first * s for (first, _), s in zip(rows, strides, strict=True))
-            for index in itertools.product(*(range(r + 1) for r in orders)):
-                w = _outer_product([E[r] for (_, E), r in zip(rows, index, strict=True)])
-                contract(base, offset, w, P, out[index][part], D)
-        return out.reshape(*out.shape[:k], *shape, *tail)
+        base = sum(first * s for (first, _), s in zip(rows, strides, strict=True))
+        for index in itertools.product(*(range(r + 1) for r in orders)):
+            w = _outer_product([E[r] for (_, E), r in zip(rows, index, strict=True)])
+            contract(base, offset, w, P, out[index], extent(P.shape[1]))
 
     def _on_grid(self, x: list[Array], orders: tuple[int, ...]) -> Array:
         """Return derivatives at all combinations of flat parameter arrays: one banded matrix an axis."""
@@ -296,11 +308,6 @@ class Spline(Frozen):
             if space.periodic:
                 P = np.take(P, space.wrapped(0, space.dimension + space.degree), axis=axis)
         return P
-
-    def _padded_strides(self) -> list[int]:
-        """How many coefficients apart neighbours along each axis of `_padded` are."""
-        counts = [space.dimension + space.degree * space.periodic for space in self.spaces]
-        return [math.prod(counts[axis + 1 :]) for axis in range(len(counts))]
 
     # ---- new splines from old -----------------------------------------------------------------------------------
 

@@ -14,8 +14,8 @@ from knotwork.banded import Banded
 from knotwork.errors import ParameterError
 from knotwork.insertion.merge import discrete_bsplines, old_among
 from knotwork.kernel import kernel
-from knotwork.knots import distinct, merged
-from knotwork.numbers import empty
+from knotwork.knots import distinct, merged, old_is_next
+from knotwork.numbers import empty, require_room
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -27,10 +27,17 @@ def elevation_rows(U, W, stop, n, lo, start, E, x, row):  # type: ignore[no-unty
     W holds each break once: U and W merged are the raised knots. The window of n + 1 of them has the old knots
     U[lu … hu-1] and the new ones W[lw … hw-1]; leaving out a value that occurs m times in it counts m times.
     """
+    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n + 1)
+    lw, hw = lo - lu, lo + n + 1 - hu
     for i in range(len(start)):
-        lu = old_among(U, W, stop, lo + i + 1)
-        hu = old_among(U, W, stop, lo + i + n + 2)
-        lw, hw = lo + i + 1 - lu, lo + i + n + 2 - hu
+        if old_is_next(U, lu, W, lw, stop):
+            lu += 1
+        else:
+            lw += 1
+        if old_is_next(U, hu, W, hw, stop):
+            hu += 1
+        else:
+            hw += 1
         start[i] = lu - 1 - (hw - lw)
         for r in range(n + 2):
             E[i, r] = U[0] - U[0]
@@ -77,7 +84,9 @@ def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
     axis = spline.axis(axis)
     if isinstance(times, bool) or not isinstance(times, int | np.integer) or times < 0:
         raise ParameterError(f"times {times!r} given; expected an integer of at least 0")
-    empty((sum(len(space.breaks) for space in spline.spaces) * int(times), spline.coefficients.size), np.float64)
+    space = spline.spaces[axis]
+    rows = space.dimension + int(times) * len(space.breaks)
+    require_room((rows, spline.coefficients.size // space.dimension), spline.coefficients.dtype)
     for _ in range(int(times)):
         spline = _once(spline, axis)
     return spline

@@ -29,11 +29,15 @@ def boehm(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
     if m > n:
         return m
     q = lo
-    s[: q + 1] = t[: q + 1]
+    for i in range(q + 1):
+        s[i] = t[i]
     s[q + 1] = u
-    s[q + 2 :] = t[q + 1 :]
+    for i in range(q + 1, len(t)):
+        s[i + 1] = t[i]
     for a in range(len(P)):
-        W[a, : q - n + 1] = P[a, : q - n + 1]
+        for i in range(q - n + 1):
+            for c in range(len(D)):
+                W[a, i, c] = P[a, i, c]
         for i in range(q - n + 1, q + 1):
             if t[i] == u:
                 for c in range(len(D)):
@@ -42,5 +46,7 @@ def boehm(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
                 b = (u - t[i]) / (t[i + n] - t[i])
                 for c in range(len(D)):
                     W[a, i, c] = (1 - b) * P[a, i - 1, c] + b * P[a, i, c]
-        W[a, q + 1 :] = P[a, q:]
+        for i in range(q + 1, W.shape[1]):
+            for c in range(len(D)):
+                W[a, i, c] = P[a, i - 1, c]
     return m

@@ -50,7 +50,9 @@ def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
     if axis or len(spaces) > 1:
         axis = spline.axis(axis)
     space = spaces[axis]
-    if type(knots) is float and not space.periodic and space.knots.dtype == np.float64:
+    if isinstance(knots, list | tuple | np.ndarray) and len(knots) == 1:
+        knots = knots[0]
+    if isinstance(knots, float) and not space.periodic and not space.exact:
         return _one(spline, knots, axis)
     target, new = space.refinement(knots)
     return refine_to(spline, axis, target, new)

@@ -12,6 +12,7 @@ import numpy as np
 
 from knotwork.banded import combination
 from knotwork.kernel import extent, kernel
+from knotwork.knots import old_is_next
 from knotwork.numbers import Array, empty
 from knotwork.parallel import in_parts
 
@@ -21,7 +22,7 @@ BLOCK = 64
 
 @kernel
 def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
-    """Return how many of the first `count` merged knots are old; of equals old first, but new before U[stop]."""
+    """Return how many of the first `count` merged knots are old; in the order of `old_is_next`."""
     lo, hi = max(0, count - len(W)), min(count, len(U))
     while lo < hi:
         j = (lo + hi) // 2
@@ -86,11 +87,11 @@ def insertion_rows(U, W, stop, n, lo, start, new, E):  # type: ignore[no-untyped
     hu = old_among(U, W, stop, lo + n)
     lw, hw = lo - lu, lo + n - hu
     for i in range(len(start)):
-        if lw >= len(W) or (lu < stop and U[lu] <= W[lw]):
+        if old_is_next(U, lu, W, lw, stop):
             lu += 1
         else:
             lw += 1
-        if hw >= len(W) or (hu < stop and U[hu] <= W[hw]):
+        if old_is_next(U, hu, W, hw, stop):
             hu += 1
         else:
             hw += 1

@@ -8,7 +8,7 @@ import numpy as np
 
 from knotwork.calculus import as_blocks
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.insertion.insert import refine_to
+from knotwork.insertion.merge import refined
 from knotwork.knots import distinct, merged, new_knots, sorted_knots
 from knotwork.numbers import Array, exact, numbers
 from knotwork.space import SplineSpace
@@ -86,12 +86,12 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     ([[0.0, 1.0, 2.0], [2.0, 3.0, 4.0]], [0.0, 1.0, 2.0])
     """
     k = len(spline.spaces)
-    nets, breaks = spline, []
+    nets, breaks = spline.coefficients, []
     for axis, space in enumerate(spline.spaces):
         breaks.append(space.breaks)
-        nets = _in_pieces(nets, axis)
+        nets = _in_pieces(nets, axis, space)
     counts = [n for x, space in zip(breaks, spline.spaces, strict=True) for n in (len(x) - 1, space.order)]
-    split_axes = nets.coefficients.reshape(*counts, *nets.coefficients.shape[k:])
+    split_axes = nets.reshape(*counts, *nets.shape[k:])
     order = [*range(0, 2 * k, 2), *range(1, 2 * k, 2), *range(2 * k, split_axes.ndim)]
     return np.ascontiguousarray(split_axes.transpose(order)), breaks[0] if k == 1 else tuple(breaks)
 
@@ -169,36 +169,30 @@ def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = F
         if not keep
     ]
     new = np.concatenate(missing) if missing else t[:0]
-    full = _insert_anywhere(opened, axis, new)
-    t = full.spaces[axis].knots
-    lo = 0 if keep_start else int(np.searchsorted(t, a, "left"))
-    hi = len(t) if keep_end else int(np.searchsorted(t, b, "right"))
-    P = as_blocks(full.coefficients, axis)[:, lo : hi - n - 1]
-    shape = full.coefficients.shape
-    return full.with_axis(
+    T = merged(t, new)
+    lo = 0 if keep_start else int(np.searchsorted(T, a, "left"))
+    hi = len(T) if keep_end else int(np.searchsorted(T, b, "right"))
+    P = refined(t, new, space.dimension, n, as_blocks(opened.coefficients, axis), lo, hi - n - 1 - lo)
+    shape = opened.coefficients.shape
+    return opened.with_axis(
         axis,
-        SplineSpace.trusted(n, t[lo:hi].copy()),
-        np.array(P.reshape(*shape[:axis], hi - n - 1 - lo, *shape[axis + 1 :])),
+        SplineSpace.trusted(n, T if len(T) == hi - lo else T[lo:hi].copy()),
+        P.reshape(*shape[:axis], hi - n - 1 - lo, *shape[axis + 1 :]),
     )
-
-
-def _insert_anywhere(spline: Spline, axis: int, new: Array) -> Spline:
-    """Insert sorted knots of the domain that are known to fit."""
-    if not len(new):
-        return spline
-    space = spline.spaces[axis]
-    knots = merged(space.knots, new)
-    return refine_to(spline, axis, SplineSpace.trusted(space.degree, knots), new)
 
 
 def _opened(spline: Spline, axis: int) -> Spline:
     """Return a periodic spline over one period as an ordinary one: its knots continue beyond both ends."""
     space = spline.spaces[axis]
     n = space.degree
-    t, zero = space.unrolled
-    knots = t[zero - n : zero + space.dimension + n + 1].copy()
     P = np.take(spline.coefficients, space.wrapped(-n, space.dimension + n), axis)
-    return spline.with_axis(axis, SplineSpace.trusted(n, knots), P)
+    return spline.with_axis(axis, SplineSpace.trusted(n, _open_knots(space)), P)
+
+
+def _open_knots(space: SplineSpace) -> Array:
+    """Return the knots of one period and `degree` more beyond both ends."""
+    t, zero = space.unrolled
+    return t[zero - space.degree : zero + space.dimension + space.degree + 1].copy()
 
 
 def _two_turns(spline: Spline, axis: int) -> Spline:
@@ -211,13 +205,15 @@ def _two_turns(spline: Spline, axis: int) -> Spline:
     return spline.with_axis(axis, SplineSpace.trusted(space.degree, knots, True), coefficients)
 
 
-def _in_pieces(spline: Spline, axis: int) -> Spline:
-    """Return the spline with every break of multiplicity degree + 1, clamped."""
-    space = spline.spaces[axis]
+def _in_pieces(P: Array, axis: int, space: SplineSpace) -> Array:
+    """Return coefficients along one axis with every break of the domain of multiplicity degree + 1, clamped."""
+    n, t, shape = space.degree, space.knots, P.shape
     a, b = space.domain
-    opened = _opened(spline, axis) if space.periodic else spline
-    space = opened.spaces[axis]
-    n, t = space.degree, space.knots
-    values, counts = distinct(t[(t >= a) & (t <= b)])
-    new = np.repeat(values, n + 1 - counts)
-    return _restrict(_insert_anywhere(opened, axis, new), axis, a, b)
+    blocks, stop = as_blocks(P, axis), space.dimension
+    if space.periodic:
+        t, blocks = _open_knots(space), np.ascontiguousarray(blocks[:, space.wrapped(-n, stop + n)])
+        stop += n
+    values, counts = distinct(t[np.searchsorted(t, a, "left") : np.searchsorted(t, b, "right")])
+    rows = (len(values) - 1) * (n + 1)
+    out = refined(t, np.repeat(values, n + 1 - counts), stop, n, blocks, int(np.searchsorted(t, a, "left")), rows)
+    return out.reshape(*shape[:axis], rows, *shape[axis + 1 :])
