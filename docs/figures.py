@@ -1,5 +1,6 @@
 """Make the pictures of the documentation: python docs/figures.py."""
 
+import sys
 from pathlib import Path
 
 import matplotlib
@@ -9,10 +10,11 @@ matplotlib.use("agg")
 from matplotlib import pyplot as plt
 
 import knotwork as kw
-from knotwork.plotting import INK, KNOT, NET
+from knotwork.plotting import INK, KNOT
 
+EXAMPLES = Path(__file__).parent.parent / "examples"
 IMAGES = Path(__file__).with_name("images")
-HUES = ["#1f3a5f", "#c4502f", "#3c8d6e", "#b58a1b", "#7a4f9a", "#4a90c2"]
+HUES = [INK, KNOT, "#3c8d6e", "#b58a1b", "#7a4f9a"]
 
 
 def periodic() -> None:
@@ -65,6 +67,17 @@ def periodic() -> None:
     fig.savefig(IMAGES / "periodic.png", dpi=150)
 
 
+def reduction() -> None:
+    """Draw the coast of Iceland reduced to 2 km, as the demo does."""
+    sys.path.append(str(EXAMPLES))
+    from demo import DETAIL, picture
+
+    before = kw.read(EXAMPLES / "iceland.csv")
+    after = [kw.reduce(kw.elevate(line, 2), 2.0).spline for line in before]
+    picture(IMAGES / "iceland.png", before, after, DETAIL["iceland"])
+
+
 if __name__ == "__main__":
     IMAGES.mkdir(exist_ok=True)
     periodic()
+    reduction()
