@@ -48,6 +48,19 @@ def apply_rows(first, E, P, out, D):  # type: ignore[no-untyped-def]
             combination(out, a, i, P, first[i], E, i, v, D)
 
 
+@kernel
+def pack(first, last, E, limit, wraps):  # type: ignore[no-untyped-def]
+    """Zero what follows E[i, last[i]]; unless the rows wrap around, move those that start beyond `limit` left to it."""
+    for i in range(len(first)):
+        shift = 0 if wraps else max(first[i] - limit, 0)
+        for r in range(E.shape[1] - 1, -1, -1):
+            if r < shift or r - shift > last[i]:
+                E[i, r] = E[i, 0] - E[i, 0]
+            else:
+                E[i, r] = E[i, r - shift]
+        first[i] -= shift
+
+
 class Banded(Frozen):
     """A matrix given by the first column and the entries of each row.
 
@@ -87,11 +100,8 @@ class Banded(Frozen):
         Unless it wraps around, no row of the result reaches past the last column.
         """
         width = E.shape[1] if wraps else min(E.shape[1], columns)
-        shift = np.zeros_like(first) if wraps else np.maximum(first + width - columns, 0)
-        index = np.arange(width) - shift[:, None]
-        inside = (index >= 0) & (index <= last[:, None])
-        zero = E.flat[0] * 0 if E.dtype == object and E.size else 0
-        return cls(first - shift, np.where(inside, np.take_along_axis(E, np.where(inside, index, 0), 1), zero), columns)
+        pack(first, last, E, columns - width, wraps)
+        return cls(first, np.ascontiguousarray(E[:, :width]), columns)
 
     @property
     def shape(self) -> tuple[int, int]:

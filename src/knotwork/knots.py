@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -96,21 +96,15 @@ def merged(a: Array, b: Array) -> Array:
     return T
 
 
-def multiset(knots: Iterable[Any]) -> dict[Any, int]:
-    """Return the multiplicity of each distinct knot."""
-    values, counts = distinct(np.asarray(knots))
-    return dict(zip(values.tolist(), counts.tolist(), strict=True))
+def multiplicities(knots: Array, values: Array) -> Array:
+    """Return how often each of `values` occurs among sorted knots."""
+    return np.searchsorted(knots, values, "right") - np.searchsorted(knots, values, "left")
 
 
-def combine(a: Array, b: Array, pick: Any) -> Array:
-    """Return the knots whose multiplicity is `pick(multiplicity in a, multiplicity in b)`: max, min or a difference."""
-    in_a, in_b = multiset(a), multiset(b)
-    values = sorted(in_a.keys() | in_b.keys())
-    dtype = object if object in (a.dtype, b.dtype) else np.float64
-    result = [x for x in values for _ in range(pick(in_a.get(x, 0), in_b.get(x, 0)))]
-    array = np.empty(len(result), dtype)
-    array[:] = result
-    return array
+def combine(a: Array, b: Array, pick: Callable[[Array, Array], Array]) -> Array:
+    """Return the knots whose multiplicity is `pick(multiplicities in a, in b)`: minimum, maximum or difference."""
+    values = distinct(merged(a, b))[0]
+    return np.repeat(values, pick(multiplicities(a, values), multiplicities(b, values)))
 
 
 def nodes(knots: Array, degree: int, count: int) -> Array:

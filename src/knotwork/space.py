@@ -14,6 +14,7 @@ from knotwork.knots import (
     distinct,
     in_arithmetic_of,
     merged,
+    multiplicities,
     new_knots,
     nodes,
     require_multiplicity,
@@ -255,8 +256,7 @@ class SplineSpace(Frozen):
         values, counts = distinct(self.knots[inside])
         if raised and not self.periodic:
             values, counts = values[1:-1], counts[1:-1]
-        found = np.searchsorted(other.knots, values, "right") - np.searchsorted(other.knots, values, "left")
-        return bool(np.all(found >= counts + raised))
+        return bool(np.all(multiplicities(other.knots, values) >= counts + raised))
 
     def __ge__(self, other: SplineSpace) -> bool:
         """Tell whether this space holds every spline of `other`."""
@@ -270,13 +270,13 @@ class SplineSpace(Frozen):
 
     def __and__(self, other: SplineSpace) -> SplineSpace:
         """Return the intersection: the smaller multiplicity of each knot (§5.3)."""
-        return self._with(other, min, "intersection")
+        return self._with(other, np.minimum, "intersection")
 
     def __or__(self, other: SplineSpace) -> SplineSpace:
         """Return the sum, the smallest space that holds both: the larger multiplicity of each knot (§5.3)."""
-        return self._with(other, max, "sum")
+        return self._with(other, np.maximum, "sum")
 
-    def _with(self, other: SplineSpace, pick: Callable[[int, int], int], name: str) -> SplineSpace:
+    def _with(self, other: SplineSpace, pick: Callable[[Array, Array], Array], name: str) -> SplineSpace:
         if not isinstance(other, SplineSpace):
             return NotImplemented
         if (self.degree, self.periodic) != (other.degree, other.periodic):
@@ -322,12 +322,13 @@ class SplineSpace(Frozen):
         x = np.sort(in_arithmetic_of(self.knots, x, "knots to remove"))
         if self.periodic:
             x = np.sort(np.where(x == self.knots[-1], self.knots[0], x))
-        for value, count in zip(*distinct(x), strict=True):
-            if self.multiplicity(value) < count:
-                raise KnotError(
-                    f"knot {value} is there {self.multiplicity(value)} times; cannot remove it {count} times"
-                )
-        left = SplineSpace(self.degree, combine(self.knots, x, lambda a, b: a - b), periodic=self.periodic)
+        values, counts = distinct(x)
+        found = multiplicities(self.knots, values)
+        lacking = counts > found
+        if lacking.any():
+            i = int(np.argmax(lacking))
+            raise KnotError(f"knot {values[i]} is there {found[i]} times; cannot remove it {counts[i]} times")
+        left = SplineSpace(self.degree, combine(self.knots, x, np.subtract), periodic=self.periodic)
         if left.domain != self.domain:
             raise KnotError(f"without these knots the domain {self.domain} would become {left.domain}")
         return left

@@ -144,7 +144,7 @@ def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:
         raise KnotError(f"{refined!r} does not refine {space!r}: expected equal degrees, both periodic or neither")
     if not space <= refined:
         raise KnotError(f"{refined!r} does not refine {space!r}: it lacks knots, or its domain differs")
-    new = combine(refined.knots, space.knots, lambda there, here: there - here)
+    new = combine(refined.knots, space.knots, np.subtract)
     a, b = space.domain
     if len(new) and (new[0] < a or new[-1] > b):
         raise KnotError(f"{refined!r} has new knots outside the domain [{a}, {b}]")

@@ -17,7 +17,7 @@ import numpy as np
 from knotwork.calculus import as_blocks
 from knotwork.errors import ParameterError
 from knotwork.insertion.insert import matrix_to, refine_to
-from knotwork.knots import distinct
+from knotwork.knots import distinct, multiplicities
 from knotwork.numbers import Array, numbers, require_finite
 from knotwork.removal.least_squares import least_squares
 from knotwork.removal.ranking import ranked
@@ -89,7 +89,7 @@ def remove(spline: Spline, knots: Any, axis: int = 0, tolerance: Any = 0.0) -> R
     space = spline.spaces[axis]
     kept = space.without_knots(knots).knots
     values, counts = distinct(space.knots)
-    gone = counts - (np.searchsorted(kept, values, "right") - np.searchsorted(kept, values, "left"))
+    gone = counts - multiplicities(kept, values)
     from_end = np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(space.knots))
     candidates = from_end < np.repeat(gone, counts)
     result, mask = search(original, candidates, None)
