@@ -1,10 +1,21 @@
-"""Knotwork: insert, delete and convert the knots of B-spline curves and surfaces, exactly or with a proven bound."""
+"""Knotwork: insert, delete and convert the knots of B-spline curves and surfaces, exactly or with a proven bound.
 
-from knotwork.conversion import elevate
-from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
-from knotwork.removal import Reduction, Removal, reduce, remove
+`import knotwork` loads what a spline is; each wing (insertion, removal, conversion, files, plotting) loads when one of
+its names is first used.
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline, curve, surface
+
+if TYPE_CHECKING:
+    from knotwork.conversion import elevate
+    from knotwork.files import Written, read, write
+    from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
+    from knotwork.plotting import plot
+    from knotwork.removal import Reduction, Removal, reduce, remove
 
 __version__ = "0.1.0"
 
@@ -13,16 +24,42 @@ __all__ = [
     "Removal",
     "Spline",
     "SplineSpace",
+    "Written",
     "clamp",
     "curve",
     "elevate",
     "from_bezier",
     "insert",
     "insertion_matrix",
+    "plot",
+    "read",
     "reduce",
     "remove",
     "split",
     "surface",
     "to_bezier",
     "trim",
+    "write",
 ]
+
+_WINGS = {
+    "conversion": ("elevate",),
+    "files": ("Written", "read", "write"),
+    "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
+    "plotting": ("plot",),
+    "removal": ("Reduction", "Removal", "reduce", "remove"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load the wing that a name lives in, once."""
+    for wing, names in _WINGS.items():
+        if name == wing or name in names:
+            module = importlib.import_module(f"knotwork.{wing}")
+            globals().update({wing: module} | {each: getattr(module, each) for each in names})
+            return globals()[name]
+    raise AttributeError(f"module 'knotwork' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

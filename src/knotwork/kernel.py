@@ -12,17 +12,18 @@ The environment variable ``KNOTWORK_JIT`` chooses: ``auto`` (default), ``always`
 from __future__ import annotations
 
 import functools
-import hashlib
 import os
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from types import CodeType, FunctionType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 MODES = ("auto", "always", "never")
 #: seconds of plain work that pay for importing Numba and fetching the first kernels from the cache
@@ -131,6 +132,8 @@ class Kernel:
     @functools.cached_property
     def digest(self) -> str:
         """A hash of the source, of all kernels below it and of the constants they use."""
+        import hashlib
+
         hasher = hashlib.sha256(repr(OPTIONS).encode())
         _hash_code(hasher, self.source.__code__)
         for name in self.source.__code__.co_names:
@@ -166,6 +169,8 @@ def _hash_code(hasher: Any, code: CodeType) -> None:
 
 def cache_directory() -> Path:
     """Return the directory of compiled kernels: ``$KNOTWORK_CACHE`` or the user's cache directory."""
+    from pathlib import Path
+
     given = os.environ.get("KNOTWORK_CACHE")
     if given:
         return Path(given)
@@ -190,7 +195,7 @@ def _compile(bound: FunctionType, digest: str) -> Callable[..., Any]:
     finally:
         numba.config.CACHE_DIR = previous
     cache = cached._cache
-    if not Path(cache.cache_path).is_relative_to(directory):
+    if not str(cache.cache_path).startswith(str(directory)):
         return dispatcher()  # type: ignore[no-any-return]  # Numba's other places are not keyed by the digest
     save = cache.save_overload
 
