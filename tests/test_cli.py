@@ -179,6 +179,12 @@ def test_insert_along_an_axis_of_a_surface(run):
     assert [space.dimension for space in read("t.json")[0].spaces] == [3, 3]
 
 
+def test_insert_takes_a_negative_knot(run):
+    write("c.json", kw.curve([0, 1, 2], degree=1, knots=[-2, -2, -1, 0, 0]))
+    run("insert", "c.json", "-k", "-0.5,-1.5", "-o", "d.json")
+    assert read("d.json")[0].points.tolist() == [0, 0.5, 1, 1.5, 2]
+
+
 def test_only_some_splines_are_changed(run, curve):
     write("three.json", [curve] * 3)
     told = json.loads(run("insert", "three.json", "-k", "0.5", "--only", "1", "-o", "new.json", "--json").stdout)
@@ -198,6 +204,17 @@ def test_remove_all_leaves_what_the_shape_needs(run, curve):
     run("insert", "curve.json", "--parts", "5", "-o", "finer.json")
     run("remove", "finer.json", "--all", "-o", "finer.json")
     assert read("finer.json")[0].space == curve.space
+
+
+def test_remove_all_from_a_closed_curve_keeps_the_seam_once(run):
+    points = [[1, 0], [0, 1], [-1, 0], [0, -1], [2, -2]]
+    ring = kw.curve(points, degree=2, periodic=True)
+    write("ring.json", [kw.insert(ring, [0, 0.1, 0.9]), kw.Spline(ring.space, [[3, 4]] * 5)])
+    run("remove", "ring.json", "--all", "-o", "ring.json")
+    back, dot = read("ring.json")
+    assert back.space == ring.space
+    np.testing.assert_allclose(back.points, ring.points, atol=1e-12)
+    assert dot.space.knots.tolist() == [0, 1]
 
 
 def test_bezier_form(run, curve):

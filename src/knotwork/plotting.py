@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from knotwork.errors import MissingExtraError, ParameterError, PointError
-from knotwork.knots import distinct
+from knotwork.knots import multiplicities
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -220,17 +220,15 @@ def _sampled(space: SplineSpace, samples: int) -> tuple[Array, Array]:
     """Return `samples` parameters a span and the end, and before which of them the spline jumps."""
     x = space.breaks
     u = np.append(x[:-1, None] + np.diff(x)[:, None] * (np.arange(samples) / samples), x[-1])
-    jumps = np.flatnonzero([space.multiplicity(b) > space.degree for b in x[1:-1]]) + 1
+    jumps = np.flatnonzero(_knots_inside(space)[1][1 : len(x) - 1] > space.degree) + 1
     u = np.insert(u, jumps * samples, np.nextafter(x[jumps], x[0]))
     return u, jumps * samples + np.arange(1, len(jumps) + 1)
 
 
 def _knots_inside(space: SplineSpace) -> tuple[Array, Array]:
     """Return the distinct knots in the domain and their multiplicities; the seam of a period once."""
-    values, counts = distinct(space.knots)
-    a, b = space.domain
-    inside = (values >= a) & ((values < b) if space.periodic else (values <= b))
-    return values[inside], counts[inside]
+    x = space.breaks[:-1] if space.periodic else space.breaks
+    return x, multiplicities(space.knots, x)
 
 
 def _polylines(net: Array) -> Array:

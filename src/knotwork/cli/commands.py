@@ -8,16 +8,14 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import knotwork as kw
 from knotwork.cli import report, terminal
 from knotwork.cli.terminal import Commands, Failure, Progress, Tolerance
 from knotwork.errors import KnotworkError, MissingExtraError
-
-if TYPE_CHECKING:
-    from knotwork import Spline
 
 FILE = click.Path(path_type=Path)
 
@@ -59,7 +57,7 @@ def info(files: Sequence[Path], as_json: bool) -> None:
     Example:
       knotwork info drawing.svg
     """
-    found = [(path, _read(path)) for path in files]
+    found = [(path, kw.read(path)) for path in files]
     if as_json:
         _print_json([{"file": str(path), "splines": [report.facts(s) for s in splines]} for path, splines in found])
         return
@@ -95,12 +93,10 @@ def insert(
     """
     import numpy as np
 
-    import knotwork as kw
-
     if not knots and parts is None:
         raise click.UsageError("nothing to insert; expected --knots or --parts")
 
-    def change(spline: Spline) -> tuple[Spline, float]:
+    def change(spline: kw.Spline) -> tuple[kw.Spline, float]:
         if parts is not None:
             x = spline.spaces[spline.axis(axis)].breaks
             steps = np.arange(1, parts) / parts
@@ -140,17 +136,15 @@ def remove(
       knotwork remove curve.json -k 0.5,0.5 --tolerance 0.01 -o coarser.json
       knotwork remove curve.json --all --tolerance 1e-12 -o clean.json
     """
-    import knotwork as kw
-
     if bool(knots) == every:
         raise click.UsageError("expected either --knots or --all")
 
-    def change(spline: Spline, allowed: float) -> tuple[Spline, float]:
-        space = spline.spaces[spline.axis(axis)]
+    def change(spline: kw.Spline, allowed: float) -> tuple[kw.Spline, float]:
         asked = [x for given in knots for x in given]
         if every:
-            inside = space.breaks[:-1] if space.periodic else space.breaks[1:-1]
-            asked = [x for x in inside for _ in range(space.multiplicity(x))]
+            space = spline.spaces[spline.axis(axis)]
+            (a, b), t = space.domain, space.knots
+            asked = (t[1:-1] if space.periodic else t[(a < t) & (t < b)]).tolist()
         if not asked:
             return spline, 0.0
         removal = kw.remove(spline, asked, axis, allowed)
@@ -185,9 +179,8 @@ def reduce(
       knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
     """
-    import knotwork as kw
 
-    def change(spline: Spline, allowed: float, progress: Callable[[float], None]) -> tuple[Spline, float]:
+    def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, float]:
         for axis, given in enumerate(spline.degree):
             spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
         reduction = kw.reduce(spline, allowed, progress=progress)
@@ -223,11 +216,9 @@ def convert(files: Sequence[Path], accuracy: float | None, flip: bool, output: P
     Example:
       knotwork convert drawing.svg -o drawing.json
     """
-    from knotwork.files import write
-
     _require_writable(output)
-    splines = [s for path in files for s in _read(path)]
-    written = write(output, [_flipped(s) for s in splines] if flip else splines, accuracy=accuracy)
+    splines = [s for path in files for s in kw.read(path)]
+    written = kw.write(output, [_flipped(s) for s in splines] if flip else splines, accuracy=accuracy)
     if as_json:
         _print_json({"output": str(output), "splines": written.count, "bound": written.bound})
     else:
@@ -253,13 +244,12 @@ def plot(
       knotwork plot small.svg --before drawing.svg --size 10 10 -o both.pdf
     """
     _require_writable(output, _picture_suffixes())
-    splines, under = _read(file), _read(before) if before else None
+    splines, under = kw.read(file), kw.read(before) if before else None
     if output.exists() and any(path and path.samefile(output) for path in (file, before)):
         raise Failure(f"{output}: the picture would replace the splines; give it another name")
     from knotwork.files.storage import replace
-    from knotwork.plotting import plot as draw
 
-    ax = draw(splines, before=under, control=control, knots=knots)
+    ax = kw.plot(splines, before=under, control=control, knots=knots)
     if file.suffix.lower() == ".svg" and ax.name != "3d":
         ax.invert_yaxis()  # in SVG, y points down
     picture = io.BytesIO()
@@ -278,7 +268,7 @@ def _change(
     output: Path | None,
     only: Sequence[int],
     as_json: bool,
-    change: Callable[..., tuple[Spline, float]],
+    change: Callable[..., tuple[kw.Spline, float]],
     tolerance: Tolerance | None = None,
     working: str | None = None,
 ) -> None:
@@ -286,11 +276,9 @@ def _change(
 
     `change` takes a spline, the tolerance if there is one, and a function to report progress to if it is `working`.
     """
-    from knotwork.files import write
-
     if output:
         _require_writable(output)
-    splines = _read(file)
+    splines = kw.read(file)
     for i in only:
         if not 0 <= i < len(splines):
             raise click.UsageError(f"--only {i}: {file} holds splines 0 to {len(splines) - 1}")
@@ -311,7 +299,7 @@ def _change(
             progress.finish(size)
     finally:
         progress.close()
-    written = write(output, changed) if output else None
+    written = kw.write(output, changed) if output else None
     if as_json:
         told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "splines": rows}
         told |= {"tolerance": allowed[0]} if allowed else {}
@@ -323,7 +311,7 @@ def _change(
     click.echo(f"written to {output}{_error_of(written.bound)}" if written else "nothing written (no --output)")
 
 
-def _row(index: int, before: Spline, after: Spline, bound: float, seconds: float) -> dict[str, Any]:
+def _row(index: int, before: kw.Spline, after: kw.Spline, bound: float, seconds: float) -> dict[str, Any]:
     return {
         "index": index,
         "degree": list(after.degree),
@@ -334,38 +322,33 @@ def _row(index: int, before: Spline, after: Spline, bound: float, seconds: float
     }
 
 
-def _in_bezier_form(spline: Spline) -> Spline:
+def _in_bezier_form(spline: kw.Spline) -> kw.Spline:
     """Return the spline with each knot inside repeated as often as the degree; what is periodic stays so."""
-    import knotwork as kw
+    import numpy as np
+
+    from knotwork.knots import multiplicities
 
     if not any(space.periodic for space in spline.spaces):
         spline = kw.clamp(spline)
     for axis, space in enumerate(spline.spaces):
         inside = space.breaks[:-1] if space.periodic else space.breaks[1:-1]
-        missing = [x for x in inside for _ in range(space.degree - space.multiplicity(x))]
-        if missing:
-            spline = kw.insert(spline, missing, axis)
+        missing = np.maximum(space.degree - multiplicities(space.knots, inside), 0)
+        spline = kw.insert(spline, np.repeat(inside, missing), axis)
     return spline
 
 
-def _flipped(spline: Spline) -> Spline:
+def _flipped(spline: kw.Spline) -> kw.Spline:
     """Return the spline with y turned over."""
     if spline.dim < 2:
         raise Failure(f"--flip: points in {spline.dim}-D have no y")
     return spline.transform([[(i == j) * (-1) ** (i == 1) for j in range(spline.dim)] for i in range(spline.dim)])
 
 
-def _extent(splines: Sequence[Spline]) -> float:
+def _extent(splines: Sequence[kw.Spline]) -> float:
     """Return the longest side of the box that holds all splines."""
     bounds = [s.bounds for s in splines]
     sides = ([b[:, k] for b in bounds if k < b.shape[1]] for k in range(max(s.dim for s in splines)))
     return float(max(max(high for _, high in side) - min(low for low, _ in side) for side in sides))
-
-
-def _read(path: Path) -> list[Spline]:
-    from knotwork.files import read
-
-    return read(path)
 
 
 def _picture_suffixes() -> list[str]:

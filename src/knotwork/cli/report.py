@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -23,25 +24,27 @@ def kind(spline: Spline) -> str:
     return " ".join(words) + (" of numbers" if spline.scalar else f" in {spline.dim}-D")
 
 
-def multiplicities(space: SplineSpace) -> tuple[dict[int, int], list[int]]:
+def repetitions(space: SplineSpace) -> tuple[dict[int, int], list[int]]:
     """Return how many interior knots have each multiplicity, and the multiplicities of the ends.
 
     In a periodic space all knots are interior, and there are no ends.
     """
-    found = [space.multiplicity(x) for x in space.breaks]
+    from knotwork.knots import multiplicities
+
+    found = multiplicities(space.knots, space.breaks).tolist()
     inside, ends = (found[:-1], []) if space.periodic else (found[1:-1], [found[0], found[-1]])
-    return {m: inside.count(m) for m in sorted(set(inside))}, ends
+    return dict(sorted(Counter(inside).items())), ends
 
 
 def continuity(space: SplineSpace) -> int | None:
     """Return the least continuity that the knots allow inside the domain, -1 for a jump; None for a single piece."""
-    inside, _ = multiplicities(space)
+    inside, _ = repetitions(space)
     return space.degree - max(inside) if inside else None
 
 
 def facts(spline: Spline) -> dict[str, Any]:
     """Return what there is to know about a spline, ready for JSON; lists have one entry a parameter."""
-    spread = [multiplicities(space) for space in spline.spaces]
+    spread = [repetitions(space) for space in spline.spaces]
     real = spline.coefficients.dtype.kind != "c"
     return {
         "kind": kind(spline),
@@ -141,7 +144,7 @@ def counted(n: int, what: str) -> str:
 
 
 def _knots(space: SplineSpace) -> str:
-    inside, ends = multiplicities(space)
+    inside, ends = repetitions(space)
     told = [f"{count:,} of multiplicity {m}" for m, count in inside.items()] or ["none inside"]
     return ", ".join(told) + (f"; ends {ends[0]} and {ends[1]}" if ends else "")
 

@@ -27,7 +27,7 @@ _HEADER = re.compile(
 
 def encode(splines: list[Spline], accuracy: float | None) -> tuple[bytes, float]:
     """Return the file for splines in float64, float32 or complex128; nothing is lost."""
-    members: dict[str, Array] = {"knotwork": np.array(VERSION)}
+    members: dict[str, Array] = {"knotwork": np.array([VERSION, len(splines)])}
     for i, spline in enumerate(splines):
         if spline.coefficients.dtype == object:
             raise FileError(f"splines[{i}] holds exact numbers, which .npz cannot; .json keeps Fractions")
@@ -47,12 +47,12 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
     members = Members(_unpacked(data))
     if "knotwork" not in members:
         raise FileError("knotwork.npy is missing: these are not splines")
-    version = int(members.array("knotwork", "iu", 0))
+    version, *counts = members.array("knotwork", "iu", 1).tolist() or [None]
     if version != VERSION:
         raise FileError(f"version {version} given; this program reads version {VERSION}")
-    count = 0
-    while f"{count}/degree" in members:
-        count += 1
+    if len(counts) != 1:
+        raise FileError(f"knotwork.npy has {1 + len(counts)} numbers; expected the version and the number of splines")
+    (count,) = counts
     return [_spline(members, str(i)) for i in range(count)]
 
 
@@ -68,10 +68,10 @@ def _unpacked(data: bytes) -> dict[str, bytes]:
             if announced > len(data):
                 raise FileError(f"the members announce {announced} bytes; the whole file has {len(data)}")
             return {info.filename: archive.read(info) for info in infos}
-    except (zipfile.BadZipFile, EOFError, NotImplementedError, OverflowError, RuntimeError, struct.error) as exc:
+    except FileError:
+        raise
+    except (zipfile.BadZipFile, EOFError, OverflowError, RuntimeError, ValueError, struct.error) as exc:
         raise FileError(f"this is no sound zip archive: {exc}") from None
-    except UnicodeDecodeError:
-        raise FileError("this is no sound zip archive: a name in it is not UTF-8") from None
 
 
 class Members:

@@ -27,8 +27,11 @@ def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):  # type: ignore[n
         while t[last[k] - m] == z:
             m += 1
         base = last[k] - m - n
-        s[: m + 2 * n + 1] = t[base : base + m + 2 * n + 1]
-        c[: m + n + 1] = d[base : base + m + n + 1]
+        for i in range(m + 2 * n + 1):
+            s[i] = t[base + i]
+        for i in range(m + n + 1):
+            for x in range(len(e)):
+                c[i, x] = d[base + i, x]
         total = scale[0] * 0
         for copy in range(copies[k]):
             level(s, c, n, m, z, a, b, e)
