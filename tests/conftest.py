@@ -1,0 +1,16 @@
+"""Settings of the whole suite: its helper modules can be imported, and Hypothesis draws the same examples every time.
+
+`HYPOTHESIS_PROFILE=explore` draws new ones, and more of them.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+from hypothesis import settings
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+settings.register_profile("repeatable", deadline=None, max_examples=40, derandomize=True, database=None)
+settings.register_profile("explore", deadline=None, max_examples=1000, database=None)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
