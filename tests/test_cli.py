@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 import tomllib
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -179,6 +180,15 @@ def test_insert_along_an_axis_of_a_surface(run):
     assert [space.dimension for space in read("t.json")[0].spaces] == [3, 3]
 
 
+def test_exact_numbers_stay_exact(run):
+    c = kw.curve([Fraction(0), Fraction(1), Fraction(5)], degree=1, knots=[Fraction(0)] * 2 + [Fraction(1, 7)] + [1, 1])
+    write("c.json", c)
+    run("insert", "c.json", "--parts", "3", "-o", "d.json")
+    (d,) = read("d.json")
+    assert d.space.breaks.tolist() == [Fraction(i, 21) for i in (0, 1, 2, 3, 9, 15, 21)]
+    assert d.points.tolist() == [0, Fraction(1, 3), Fraction(2, 3), 1, 1 + Fraction(4, 3), 1 + Fraction(8, 3), 5]
+
+
 def test_insert_takes_a_negative_knot(run):
     write("c.json", kw.curve([0, 1, 2], degree=1, knots=[-2, -2, -1, 0, 0]))
     run("insert", "c.json", "-k", "-0.5,-1.5", "-o", "d.json")
@@ -254,6 +264,13 @@ def test_reduce_stays_within_the_tolerance(run, wave, words):
     error = np.abs(independent(small)(u) - independent(line)(u)).max()
     assert 0 < error <= row["bound"] <= told["tolerance"]
     assert small.space.multiplicity(small.space.breaks[1]) == 1  # smooth: C2
+
+
+def test_reduce_takes_complex_numbers_and_a_length(run):
+    write("z.npz", kw.curve(WAVE @ [1, 1j], degree=1))
+    told = json.loads(run("reduce", "z.npz", "-t", "0.01", "--json").stdout)
+    assert told["splines"][0]["points"][1][0] < 100
+    assert "no bounds" in run("reduce", "z.npz", "-t", "1%", code=1).stderr
 
 
 def test_reduce_keeps_the_degree_unless_asked(run, wave):

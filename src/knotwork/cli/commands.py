@@ -99,8 +99,8 @@ def insert(
     def change(spline: kw.Spline) -> tuple[kw.Spline, float]:
         if parts is not None:
             x = spline.spaces[spline.axis(axis)].breaks
-            steps = np.arange(1, parts) / parts
-            spline = kw.insert(spline, (x[:-1, None] + np.diff(x)[:, None] * steps).ravel(), axis)
+            inner = x[:-1, None] + np.diff(x)[:, None] * np.arange(1, parts) / parts
+            spline = kw.insert(spline, inner.ravel(), axis)
         return kw.insert(spline, [x for given in knots for x in given], axis) if knots else spline, 0.0
 
     _change(file, output, only, as_json, change)
@@ -282,7 +282,7 @@ def _change(
     for i in only:
         if not 0 <= i < len(splines):
             raise click.UsageError(f"--only {i}: {file} holds splines 0 to {len(splines) - 1}")
-    allowed = [tolerance.of(_extent(splines))] if tolerance else []
+    allowed = [tolerance.value * (_extent(splines) if tolerance.relative else 1)] if tolerance else []
     chosen = sorted(set(only)) or range(len(splines))
     progress = Progress(working or "working", sum(splines[i].coefficients.size for i in chosen))
     rows, changed = [], list(splines)

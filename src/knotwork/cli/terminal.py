@@ -84,10 +84,6 @@ class Tolerance:
     value: float
     relative: bool
 
-    def of(self, extent: float) -> float:
-        """Return the length."""
-        return self.value * extent if self.relative else self.value
-
 
 def tolerance(text: str) -> Tolerance:
     """Return the tolerance that a text means: a number of at least 0, or a percentage such as 0.1%."""
