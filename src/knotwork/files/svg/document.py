@@ -15,8 +15,8 @@ from knotwork.files.svg.styles import Styles
 from knotwork.files.svg.tree import DEPTH, Element, parse
 from knotwork.spline import Spline
 
-#: what `use` may draw again, at most: elements, plus one for each sixteen characters of their attributes
-COPIES = 1_000_000
+#: what `use` may draw again, at most: elements, plus one for each 160 characters of their attributes
+COPIES = 100_000
 _GROUPS = ("g", "a", "svg", "switch")
 
 
@@ -33,7 +33,7 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
         raise FileError(f"line {root.line}: the root element is {root.tag or 'of another kind'!r}; expected svg")
     drawn = Drawn(root, remark)
     found: list[Spline] = []
-    for element, place in drawn.shapes():
+    for element, place in list(drawn.shapes()):  # all of the walk first, which may find that it goes too far
         with _at(element):
             found += curves(outline(element.tag, element.attributes, place.whole), place.map)
     return found
@@ -81,7 +81,7 @@ class Drawn:
         if place.depth == DEPTH:
             raise FileError(f"line {element.line}: elements and use of them are nested deeper than {DEPTH}")
         if place.chain:
-            self.copies += 1 + sum(map(len, element.attributes.values())) // 16
+            self.copies += 1 + sum(map(len, element.attributes.values())) // 160
             if self.copies > COPIES:
                 raise FileError(f"line {element.line}: use elements multiply the drawing beyond {COPIES} elements")
         with _at(element):

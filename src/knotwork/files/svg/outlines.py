@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.errors import FileError
 from knotwork.files.lengths import increasing
 from knotwork.files.svg.notation import Affine
-from knotwork.files.svg.pathdata import Subpath
+from knotwork.files.svg.pathdata import Point, Subpath
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -18,12 +18,15 @@ from knotwork.spline import Spline
 def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
     """Return the curve of each subpath under a map of the plane; one that goes nowhere is no curve."""
     with np.errstate(over="ignore", invalid="ignore"):
-        found = [_curve(path, place) for path in paths if path.pieces]
+        found = [_curve(path, place) for path in paths]
     return [curve for curve in found if curve is not None]
 
 
 def _curve(path: Subpath, place: Affine) -> Spline | None:
-    nets = _mapped(_nets(path), place)
+    pieces = _going_somewhere(path)
+    if not pieces:
+        return None
+    nets = _mapped(_nets(pieces), place)
     if not np.isfinite(nets).all():
         raise FileError("the outline reaches beyond float64")
     steps = np.hypot(*(nets[:, 1:] - nets[:, :-1]).T).T
@@ -52,16 +55,20 @@ def _joined(nets: Array, t: Array, closed: bool) -> Spline:
     return Spline(SplineSpace(n, knots), np.concatenate([nets[0, :1], points]))
 
 
-def _nets(path: Subpath) -> Array:
+def _going_somewhere(path: Subpath) -> list[tuple[Point, ...]]:
+    """Return the points of each piece, the first one included; pieces whose points are all equal are left out."""
+    starts = [path.start, *(piece[-1] for piece in path.pieces)]
+    return [(a, *piece) for a, piece in zip(starts, path.pieces, strict=False) if any(p != a for p in piece)]
+
+
+def _nets(pieces: list[tuple[Point, ...]]) -> Array:
     """Return the Bézier points of all pieces, shape (pieces, degree + 1, 2), those of lower degree raised."""
-    degrees = np.array([len(piece) for piece in path.pieces])
-    ends = np.array([path.start, *(piece[-1] for piece in path.pieces)])
-    n = int(degrees.max())
-    nets = np.empty((len(degrees), n + 1, 2))
-    for degree in set(degrees.tolist()):
-        chosen = np.flatnonzero(degrees == degree)
-        after = np.array([*chain.from_iterable(path.pieces[i] for i in chosen)]).reshape(-1, degree, 2)
-        nets[chosen] = raised(np.concatenate([ends[chosen, None], after], axis=1), n)
+    counts = np.array([len(piece) for piece in pieces])
+    nets = np.empty((len(counts), counts.max(), 2))
+    for count in set(counts.tolist()):
+        chosen = np.flatnonzero(counts == count)
+        points = np.array([*chain.from_iterable(pieces[i] for i in chosen)]).reshape(-1, count, 2)
+        nets[chosen] = raised(points, nets.shape[1] - 1)
     return nets
 
 

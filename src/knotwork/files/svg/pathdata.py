@@ -18,8 +18,8 @@ _SIZES = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2}
 _GAP = r"[\s,]*+"
 _ARC = re.compile(_GAP.join(["", *[f"({NUMBER.pattern})"] * 3, "([01])", "([01])", *[f"({NUMBER.pattern})"] * 2, ""]))
 
-#: An arc of this angle at most is one cubic. Its distance from the ellipse is then below 2.1e-9 of the larger radius:
-#: 4/27 · sin⁶(θ/4) / cos²(θ/4) at θ = π/16.
+#: An arc of this angle at most is one cubic. It is then off the ellipse by less than 1.04e-9 of the larger radius:
+#: 2/27 · sin⁶(θ/4) / cos²(θ/4) at θ = π/16.
 ARC_ANGLE = math.pi / 16
 
 
@@ -65,6 +65,8 @@ def subpaths(d: str) -> list[Subpath]:
     before = d[: commands[0].start() if commands else stop].strip()
     if before and before != "none":
         raise FileError(f"path data begins with {before[:20]!r}; expected M")
+    if not commands:
+        return []
     ends = [*(match.start() for match in commands[1:]), stop]
     last: Piece = ()
     for match, end in zip(commands, ends, strict=True):

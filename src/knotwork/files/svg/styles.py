@@ -26,7 +26,7 @@ class Styles:
                 declared = _declarations(body)
                 for selector in selectors.split(",") if declared else ():
                     match = _SELECTOR.fullmatch(selector.strip())
-                    if match:
+                    if match and match[0]:
                         tag, parts = match[1] or "*", _PART.findall(match[2])
                         rank = (sum(p[0] == "#" for p in parts), len(parts), tag != "*")
                         self.rules.append((rank, tag, set(parts), declared))
