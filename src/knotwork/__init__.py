@@ -1,14 +1,10 @@
 """Knotwork: insert, delete and convert the knots of B-spline curves and surfaces, exactly or with a proven bound.
 
-`import knotwork` loads what a spline is; each wing (insertion, removal, conversion, files, plotting) loads when one of
-its names is first used.
+`import knotwork` is quick: each part loads when one of its names is first used.
 """
 
 import importlib
 from typing import TYPE_CHECKING, Any
-
-from knotwork.space import SplineSpace
-from knotwork.spline import Spline, curve, surface
 
 if TYPE_CHECKING:
     from knotwork.conversion import elevate
@@ -16,6 +12,8 @@ if TYPE_CHECKING:
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
     from knotwork.removal import Reduction, Removal, reduce, remove
+    from knotwork.space import SplineSpace
+    from knotwork.spline import Spline, curve, surface
 
 __version__ = "0.1.0"
 
@@ -42,21 +40,23 @@ __all__ = [
     "write",
 ]
 
-_WINGS = {
+_PARTS = {
     "conversion": ("elevate",),
     "files": ("Written", "read", "write"),
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),
     "removal": ("Reduction", "Removal", "reduce", "remove"),
+    "space": ("SplineSpace",),
+    "spline": ("Spline", "curve", "surface"),
 }
 
 
 def __getattr__(name: str) -> Any:
-    """Load the wing that a name lives in, once."""
-    for wing, names in _WINGS.items():
-        if name == wing or name in names:
-            module = importlib.import_module(f"knotwork.{wing}")
-            globals().update({wing: module} | {each: getattr(module, each) for each in names})
+    """Load the part that a name lives in, once."""
+    for part, names in _PARTS.items():
+        if name == part or name in names:
+            module = importlib.import_module(f"knotwork.{part}")
+            globals().update({part: module} | {each: getattr(module, each) for each in names})
             return globals()[name]
     raise AttributeError(f"module 'knotwork' has no attribute {name!r}")
 

@@ -19,7 +19,7 @@ PARAMETERS = {"curve": ("",), "surface": ("_u", "_v"), "volume": ("_u", "_v", "_
 def shapes(entry: Entry, remark: Callable[[str], None]) -> list[Spline]:
     """Return the splines of a geomdl file; trims are left out, with a remark."""
     kind = entry["type"].value
-    if kind not in PARAMETERS:
+    if kind not in list(PARAMETERS):
         raise entry["type"].unlike(f"one of {', '.join(PARAMETERS)}")
     data = entry["data"]
     found = [data] if isinstance(data.value, dict) else data.items()
@@ -54,7 +54,8 @@ def _space(entry: Entry, name: str) -> SplineSpace:
 def _homogeneous(points: Array, weights: Array) -> Array:
     if weights.shape != points.shape[:1]:
         raise PointError(f"{weights.size} weights given for {len(points)} points")
-    require_finite(points, "points", PointError)
+    for array, name in ((points, "points"), (weights, "weights")):
+        require_finite(array, name, PointError)
     with np.errstate(over="ignore"):
         return np.column_stack([points * weights[:, None], weights])
 

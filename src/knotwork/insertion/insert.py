@@ -100,9 +100,9 @@ def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int
     a, b = space.domain
     if not len(new):
         return t, new, len(t), left, left
-    turns = range(-1 - left // space.dimension, 2 + len(t) // space.dimension)
-    W = np.concatenate([turned(new, np.array(turn), a, b) for turn in turns])
-    W = W[(t[0] <= W) & (t[-1] >= W)]
+    turns = range(-1 - left // space.dimension, 2 + (len(t) - left) // space.dimension)
+    W = np.concatenate([turned(new, np.array(turn), a, b) if turn else new for turn in turns])
+    W = W[np.searchsorted(W, t[0], "left") : np.searchsorted(W, t[-1], "right")]
     return t, W, len(t), left + int(np.searchsorted(W, a, "left")), left
 
 

@@ -252,7 +252,11 @@ class Original:
         return ranked(t, d, space.degree, last, copies, self.scale)
 
 
-def search(original: Original, candidates: Array, progress: Progress | None) -> tuple[Trial, Array]:
+Found = tuple[Trial, Array]
+Attempt = Callable[[Array], Found | None]
+
+
+def search(original: Original, candidates: Array, progress: Progress | None) -> Found:
     """Remove candidate knots until none goes; return the last fit and the mask of knots kept."""
     t = original.space.knots
     mask = np.ones(len(t), bool)
@@ -260,25 +264,18 @@ def search(original: Original, candidates: Array, progress: Progress | None) -> 
     rounds = 0
     while candidates.any():
         values, copies = distinct(t[candidates])
-        groups = grouped(original.costs(best, values, copies))
         owner = np.repeat(np.arange(len(values)), copies)
-
+        groups = grouped(original.costs(best, values, copies))
         attempt = functools.partial(_attempt, original, mask, candidates, owner, copies)
-        low, high, found = 0, len(owner), None
-        count = high  # often everything goes
-        while low < high:
-            accepted = attempt(chosen(groups, count))
-            if accepted:
-                low, found = count, accepted
-            else:
-                high = count - 1
-            count = (low + high + 1) // 2
+
+        def report(done: float, rounds: int = rounds) -> None:
             if progress is not None:
-                done = 1 - math.log2(1 + high - low) / math.log2(2 + len(owner))
                 progress(1 - 0.5**rounds * (1 - 0.5 * done))
-        if found is None:  # the cheapest knot does not go; perhaps one of the next does
-            cheapest = np.concatenate(groups)[1:SINGLES]
-            found = next(filter(None, (attempt(cheapest[i : i + 1]) for i in range(len(cheapest)))), None)
+
+        # at first often everything goes; later only few
+        found = _many(attempt, groups, len(owner) if rounds == 0 else 1, report)
+        # where the cheapest knot does not go, one of the next may
+        found = found or _singly(attempt, np.concatenate(groups)[1:SINGLES])
         if found is None:
             break
         best, mask = found
@@ -289,9 +286,34 @@ def search(original: Original, candidates: Array, progress: Progress | None) -> 
     return best, mask
 
 
+def _many(attempt: Attempt, groups: list[Array], first: int, report: Progress) -> Found | None:
+    """Search for the largest number of knots that go, by trying `first`, then doubling or halving."""
+    low, high = 0, sum(map(len, groups))
+    total, count, found = high, first, None
+    while low < high:
+        accepted = attempt(chosen(groups, count))
+        low, high = (count, high) if accepted else (low, count - 1)
+        found = accepted or found
+        count = min(2 * count, high) if high == total else (low + high + 1) // 2
+        report(1 - math.log2(1 + high - low) / math.log2(2 + total))
+    return found
+
+
+def _singly(attempt: Attempt, order: Array) -> Found | None:
+    """Try knots one by one, keeping those that go."""
+    gone: list[int] = []
+    found = None
+    for one in order.tolist():
+        accepted = attempt(np.array([*gone, one]))
+        if accepted:
+            gone.append(one)
+            found = accepted
+    return found
+
+
 def _attempt(
     original: Original, mask: Array, candidates: Array, owner: Array, copies: Array, picked: Array
-) -> tuple[Trial, Array] | None:
+) -> Found | None:
     """Fit without the picked copies of candidate knots; None if the tolerance does not admit it."""
     left = mask.copy()
     left[_last_copies(candidates, owner, copies, picked)] = False
