@@ -88,6 +88,7 @@ def test_trims_are_left_out_with_a_warning(tmp_path: Path) -> None:
         ({"control_points": {"points": []}}, "expected one point a row"),
         ({"control_points": surface()["control_points"] | {"weights": [1]}}, "1 weights given for 6 points"),
         ({"control_points": surface()["control_points"] | {"weights": [1, 1, 0, 1, 1, 1]}}, r"weights\[0, 2\] is 0\.0"),
+        ({"control_points": surface()["control_points"] | {"weights": [1, 1, 1e999, 1, 1, 1]}}, r"weights\[2\] is inf"),
         ({"type": "freeform"}, 'type is "freeform"; expected "spline"'),
     ],
 )
@@ -100,3 +101,5 @@ def test_each_fault_is_named_by_its_place(tmp_path: Path, change: dict[str, Any]
 def test_an_unknown_kind_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"shape\.type is \"mesh\"; expected one of curve, surface, volume"):
         read(file(tmp_path / "a.json", "mesh", [BENT]))
+    with pytest.raises(FileError, match=r"shape\.type is a list; expected one of"):
+        read(file(tmp_path / "a.json", [], [BENT]))  # type: ignore[arg-type]

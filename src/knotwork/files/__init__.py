@@ -36,7 +36,8 @@ class Written:
     count : int
         How many splines are in it.
     bound : float
-        No point of the written geometry is farther than this from its spline; 0.0 if the format holds it exactly.
+        No point of the written geometry is farther than this from its spline, the rounding of floats apart; 0.0 if
+        the format holds it exactly.
     """
 
     path: Path
@@ -62,19 +63,19 @@ def read(path: str | os.PathLike[str]) -> list[Spline]:
     Warns
     -----
     UserWarning
-        If something in the file had to be left out: repeated points of a polyline, trims of a surface.
+        If something in the file had to be left out: repeated points of a polyline, trims of a surface, `use` of a
+        shape that is not there.
     """
     path = Path(path)
     codec = _format(path)
-
-    def remark(text: str) -> None:
-        warnings.warn(f"{path}: {text}", UserWarning, stacklevel=3)
-
     data = fetch(path)
+    remarks: list[str] = []
     try:
-        splines: list[Spline] = codec.decode(data, remark)
+        splines: list[Spline] = codec.decode(data, remarks.append)
     except KnotworkError as exc:
         raise FileError(f"{path}: {exc}") from exc
+    for remark in remarks:
+        warnings.warn(f"{path}: {remark}", UserWarning, stacklevel=2)
     if not splines:
         raise FileError(f"{path}: there is no spline in this file")
     return splines

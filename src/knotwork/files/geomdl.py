@@ -19,7 +19,7 @@ PARAMETERS = {"curve": ("",), "surface": ("_u", "_v"), "volume": ("_u", "_v", "_
 def shapes(entry: Entry, remark: Callable[[str], None]) -> list[Spline]:
     """Return the splines of a geomdl file; trims are left out, with a remark."""
     kind = entry["type"].value
-    if kind not in list(PARAMETERS):
+    if not isinstance(kind, str) or kind not in PARAMETERS:
         raise entry["type"].unlike(f"one of {', '.join(PARAMETERS)}")
     data = entry["data"]
     found = [data] if isinstance(data.value, dict) else data.items()
