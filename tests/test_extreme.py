@@ -1,0 +1,126 @@
+"""Extreme but valid input, against exact results: tiny gaps, huge and tiny scales, high degrees, many points."""
+
+from __future__ import annotations
+
+import time
+from fractions import Fraction
+
+import numpy as np
+import oracle
+import pytest
+
+import knotwork as kw
+from knotwork import Spline, SplineSpace
+
+EPS = np.finfo(float).eps
+
+
+def error(found, exact):
+    """Return the largest difference, relative to the largest exact number."""
+    found, exact = np.ravel(found), np.ravel(exact)
+    assert np.isfinite(found).all()
+    largest = max(map(abs, exact))
+    return max(abs(Fraction(float(x)) - y) for x, y in zip(found, exact, strict=True)) / largest if largest else 0
+
+
+def ulps(x, count):
+    """Return neighbouring floats from x on."""
+    result = [x]
+    for _ in range(count):
+        result.append(float(np.nextafter(result[-1], np.inf)))
+    return result
+
+
+SPREADS = {
+    "1e-300 apart at the start": ([0.0, *(k * 1e-300 for k in range(1, 6)), 1.0], [1.5e-300, 2.5e-300, 0.5]),
+    "1e-300 apart": ([k * 1e-300 for k in range(6)], [1.5e-300, 0.5e-300]),
+    "one ulp apart": ([0.0, *ulps(1.0, 5), 2.0], [1.0, 0.5, 1.5]),
+    "one ulp apart, far from 0": ([1e150, *ulps(2e150, 4), 3e150], [2.5e150]),
+    "1e150": ([k * 1e150 for k in range(6)], [1.5e150, 0.5e150]),
+    "1e-150": ([k * 1e-150 for k in range(6)], [1.5e-150, 0.5e-150]),
+    "1 and 1e150": ([0.0, 1.0, 2.0, 1e150, 2e150], [0.5, 1.5e150, 1e75]),
+}
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("degree", [1, 3, 5])
+@pytest.mark.parametrize("spread", SPREADS)
+def test_spreads_of_knots(spread, degree, periodic):
+    knots, new = SPREADS[spread]
+    ends = 1 if periodic else degree + 1
+    space = SplineSpace(degree, [*[knots[0]] * ends, *knots[1:-1], *[knots[-1]] * ends], periodic=periodic)
+    f = Spline(space, np.random.default_rng(degree).standard_normal(space.dimension))
+    check(f, new, [*knots, *new])
+    for scale in (1e150, 1e-150):
+        wide = kw.insert(f.transform(scale), new)
+        np.testing.assert_allclose(wide.points / scale, kw.insert(f, new).points, rtol=1e-14, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("degree", "kind"),
+    [
+        *((n, kind) for n in (0, 8, 13) for kind in ("clamped", "periodic", "unclamped")),
+        (25, "unclamped"),
+    ],
+)
+def test_degrees(degree, kind):
+    """Knots are few and small multiples of 1/4, so that the exact results take no time."""
+    if kind == "unclamped":
+        space = SplineSpace(degree, np.arange(2 * degree + 4) // 3 if degree else [0, 1, 3])
+    elif kind == "periodic":
+        space = SplineSpace(degree, [0, 1, 1.25, 3] if degree else [0, 1, 3], periodic=True)
+    else:
+        space = SplineSpace(degree, [0] * (degree + 1) + [1, 1.25] + [3] * (degree + 1))
+    a, b = space.domain
+    places = [a + (b - a) * x for x in (0.125, 0.5, 0.75)]
+    check(Spline(space, np.random.default_rng(degree).standard_normal(space.dimension)), places, [a, b, *places])
+
+
+def check(f, new, u):
+    """Insertion, values, elevation, Bézier nets and integral of scalar floats against exact arithmetic."""
+    bound = 4 * (f.degree[0] + 2) * EPS
+    rows, defined = oracle.matrix(f.space, f.space.with_knots(new))
+    exact = rows @ oracle.fractions(f.coefficients)
+    assert error(kw.insert(f, new).coefficients[defined], exact[defined]) <= bound
+    rows, defined = oracle.matrix(f.space, f.space.with_knots(new[0]))
+    exact = rows @ oracle.fractions(f.coefficients)
+    assert error(kw.insert(f, float(new[0])).coefficients[defined], exact[defined]) <= bound
+    assert error(f(u), [oracle.spline_value(f, x).item() for x in u]) <= bound
+    slopes = [oracle.spline_value(f, x, orders=(1,)).item() for x in u]
+    if max(map(abs, slopes)) < 1e300:
+        assert error(f.derivatives(u, 1)[1], slopes) <= 4 * bound
+    g = f.in_exact_arithmetic()
+    assert error(kw.elevate(f).coefficients, kw.elevate(g).coefficients) <= bound
+    assert error(kw.to_bezier(f)[0], kw.to_bezier(g)[0]) <= bound
+    areas = g.antiderivative().coefficients
+    if 1e-290 < max(map(abs, areas)) < 1e300:
+        assert error(f.antiderivative().coefficients, areas) <= bound * len(areas)
+
+
+def test_a_million_points():
+    """In seconds, and right: a straight line stays what it is."""
+    n = 1_000_000
+    space = SplineSpace.clamped(3, n)
+    line = Spline(space, space.nodes)
+    start = time.perf_counter()
+    new = np.linspace(0.25, 0.75, 1001)
+    for refined in (kw.insert(line, 0.3), kw.insert(line, new)):
+        assert abs(refined.coefficients - refined.space.nodes).max() <= 4 * EPS
+    u = np.linspace(0, 1, 1000)
+    assert abs(line(u) - u).max() <= 4 * EPS
+    assert abs(line.derivative().coefficients - 1).max() <= 1e-8
+    assert (line.reverse().space.knots[[0, -1]] == [0, 1]).all()
+    assert time.perf_counter() - start < 20
+
+
+def test_a_derivative_too_steep_for_floats_is_not_passed_on_as_infinity():
+    steep = kw.curve([0.0, 1e10, 0.0], 1, [0, 0, 1e-300, 1, 1])
+    with pytest.raises(kw.errors.KnotworkError, match=r"finite|overflow|inf"):
+        steep.derivative()
+
+
+def test_periodic_parameters_far_away():
+    tiny = kw.curve([1.0, 2.0, 4.0], 1, [0.0, 1e-10, 2e-10, 3e-10], periodic=True)
+    assert 1 <= tiny(1e300) <= 4
+    wide = kw.curve([1.0, 2.0, 4.0], 3, [0.0, 1e307, 5e307, 1e308], periodic=True)
+    assert 1 <= wide(5e307) <= 4
