@@ -34,11 +34,14 @@ def elevation_rows(U, W, stop, n, lo, start, E, x, row):  # type: ignore[no-unty
             lu += 1
         else:
             lw += 1
+        most = 0  # new knots left after one value is left out: all, unless the last of the window is new
         if old_is_next(U, hu, W, hw, stop):
             hu += 1
         else:
             hw += 1
-        start[i] = lu - 1 - (hw - lw)
+            most = -1
+        most += hw - lw
+        start[i] = lu - 1 - most
         for r in range(n + 2):
             E[i, r] = U[0] - U[0]
         old, new = lu, lw
