@@ -195,7 +195,8 @@ def test_large_work_is_compiled(mode, loaded):
 def test_an_unknown_mode_is_an_error():
     code = """
         try:
-            import knotwork
+            import knotwork as kw
+            kw.curve([0, 1, 2, 3])(0.5)
         except ValueError as error:
             print(error)
     """
