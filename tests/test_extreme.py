@@ -122,5 +122,7 @@ def test_a_derivative_too_steep_for_floats_is_not_passed_on_as_infinity():
 def test_periodic_parameters_far_away():
     tiny = kw.curve([1.0, 2.0, 4.0], 1, [0.0, 1e-10, 2e-10, 3e-10], periodic=True)
     assert 1 <= tiny(1e300) <= 4
-    wide = kw.curve([1.0, 2.0, 4.0], 3, [0.0, 1e307, 5e307, 1e308], periodic=True)
-    assert 1 <= wide(5e307) <= 4
+    wide = kw.curve([1.0, 2.0, 4.0], 3, [0.0, 1e306, 5e306, 1e307], periodic=True)
+    assert 1 <= wide(5e306) <= 4
+    with pytest.raises(kw.errors.KnotError, match="overflow"):  # its knots go on beyond what floats hold
+        kw.curve([1.0, 2.0, 4.0], 3, [0.0, 1e307, 5e307, 1e308], periodic=True)

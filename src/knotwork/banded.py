@@ -8,7 +8,7 @@ import numpy as np
 
 from knotwork.errors import PointError
 from knotwork.kernel import extent, kernel
-from knotwork.numbers import Array, empty, numbers
+from knotwork.numbers import Array, empty, in_arithmetic_of, numbers
 from knotwork.space import Frozen
 
 _set = object.__setattr__
@@ -131,9 +131,9 @@ class Banded(Frozen):
         width = self.entries.shape[1]
         if self.wraps:
             P = np.ascontiguousarray(P[:, np.arange(self.columns + width - 1) % self.columns])
-        dtype = object if self.entries.dtype == object else P.dtype
-        out = empty((len(P), len(self.first), B), dtype)
-        apply_rows(self.first, self.entries, P, out, extent(B))
+        E = in_arithmetic_of(P, self.entries, "entries", PointError) if P.dtype == object else self.entries
+        out = empty((len(P), len(self.first), B), E.dtype if E.dtype == object else P.dtype)
+        apply_rows(self.first, E, P, out, extent(B))
         return out.reshape(*shape[:axis], len(self.first), *shape[axis + 1 :])
 
     def toarray(self) -> Array:

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.errors import ParameterError
+from knotwork.errors import ParameterError, PointError
 from knotwork.kernel import extent, kernel
-from knotwork.numbers import Array
+from knotwork.numbers import Array, require_finite
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -20,9 +20,10 @@ def differences(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
     for a in range(len(P)):
         for i in range(out.shape[1]):
             width = t[first + i + n + 1] - t[first + i + 1]
+            # a jump has no derivative at its own knot: no basis function lives there
+            f = n / width if width > 0 else width
             for c in range(len(D)):
-                # a jump has no derivative at its own knot: no basis function lives there
-                out[a, i, c] = n * (P[a, i + 1, c] - P[a, i, c]) / width if width > 0 else P[a, i, c] * 0
+                out[a, i, c] = f * (P[a, i + 1, c] - P[a, i, c])
 
 
 @kernel
@@ -32,9 +33,9 @@ def running_sums(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
         for c in range(len(D)):
             out[a, 0, c] = P[a, 0, c] * 0
         for i in range(P.shape[1]):
-            width = t[first + i + n + 1] - t[first + i]
+            f = (t[first + i + n + 1] - t[first + i]) / (n + 1)
             for c in range(len(D)):
-                out[a, i + 1, c] = out[a, i, c] + P[a, i, c] * width / (n + 1)
+                out[a, i + 1, c] = out[a, i, c] + f * P[a, i, c]
 
 
 def as_blocks(P: Array, axis: int) -> Array:
@@ -86,6 +87,7 @@ def _once(spline: Spline, axis: int) -> Spline:
         kept, first = t[1:-1], 0
     out = np.empty((P.shape[0], P.shape[1] - 1, P.shape[2]), P.dtype)
     differences(t, P, n, first, out, extent(P.shape[2]))
+    require_finite(out, "derivative", PointError)
     # a knot of multiplicity n + 1 inside jumps; for the derivative's degree n - 1 it is one too many
     starts = t[first + 1 : first + 1 + out.shape[1]]
     live = starts != t[first + n + 1 : first + n + 1 + out.shape[1]]

@@ -8,8 +8,7 @@ import numpy as np
 
 from knotwork.errors import ParameterError
 from knotwork.kernel import extent, kernel
-from knotwork.knots import in_arithmetic_of
-from knotwork.numbers import Array, all_finite, empty, numbers
+from knotwork.numbers import Array, empty, in_arithmetic_of, real_numbers, require_finite
 from knotwork.space import SplineSpace
 
 #: parameters evaluated at a time, so that their basis functions stay in the cache
@@ -116,12 +115,17 @@ class Basis:
         n = space.degree
         self.space = space
         self.t, zero = space.unrolled
-        self.first = zero if space.periodic else n
-        self.last = space.cached("last", lambda: int(np.searchsorted(self.t, space.domain[1], "left")) - 1)
+        self.first, self.last = space.cached("intervals", self._intervals)
+        self.shift = n + zero
         if count < (self.last - self.first) // 8:
             self.table = np.array([self.first, self.last])
         else:
             self.table = space.cached("cells", self._cells)
+
+    def _intervals(self) -> tuple[int, int]:
+        """Return the first and last interval of the domain that are not empty."""
+        a, b = self.space.domain
+        return int(np.searchsorted(self.t, a, "right")) - 1, int(np.searchsorted(self.t, b, "left")) - 1
 
     def _cells(self) -> Array:
         table = np.empty(2 * (self.last + 1 - self.first) + 1, np.intp)
@@ -135,10 +139,8 @@ class Basis:
         n = self.space.degree
         E = empty((order + 1, len(u), n + 1), self.t.dtype)
         basis(self.t, extent(n), extent(order + 1), span, u, E)
-        if self.space.periodic:
-            return (span - self.first - n) % self.space.dimension, E
-        span -= n
-        return span, E
+        span -= self.shift
+        return span % self.space.dimension if self.space.periodic else span, E
 
 
 def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
@@ -149,22 +151,19 @@ def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
     ParameterError
         If a value is not a finite real number, or is outside the domain and `extrapolate` is false.
     """
-    x = numbers(u, "parameters", ParameterError)
-    if x.dtype.kind == "c":
-        raise ParameterError("parameters: complex numbers given; expected real ones")
-    x = in_arithmetic_of(space.knots, x)
-    if not all_finite(x):
-        raise ParameterError("parameters: NaN or infinity given; expected finite numbers")
+    x = in_arithmetic_of(space.knots, real_numbers(u, "parameters", ParameterError), "parameters", ParameterError)
     if not x.size:
         return x
     a, b = space.domain
-    outside = (x < a) | (x > b) if x.ndim else np.asarray(bool(x < a or x > b))
-    if outside.any():
-        if space.periodic:
-            period = b - a
-            x = np.where(outside, x - period * np.floor((x - a) / period), x)
-            return np.where((x < a) | (x >= b), a, x)  # rounding
-        if not extrapolate:
-            wrong = x.reshape(-1)[int(np.argmax(outside))]
-            raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]; extrapolate=True allows it")
+    outside = np.asarray((x < a) | (x > b))
+    if not outside.any():
+        return x
+    if space.periodic:
+        with np.errstate(over="ignore", invalid="ignore"):
+            inside = np.asarray(a + np.mod(x - a, b - a), x.dtype)
+        require_finite(inside, "parameters less the start of the period", ParameterError)
+        return np.where(outside, np.where(inside < b, inside, a), x)  # rounding may reach b
+    if not extrapolate:
+        wrong = x.reshape(-1)[int(np.argmax(outside))]
+        raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]; extrapolate=True allows it")
     return x

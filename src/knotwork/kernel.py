@@ -87,13 +87,16 @@ class Kernel:
         """Run plain until the accumulated work pays for compiled code."""
         global _spent
         arrays = [a for a in args if isinstance(a, np.ndarray)]
-        if mode == "never" or any(a.dtype == _OBJECT for a in arrays):
+        if any(a.dtype == _OBJECT for a in arrays):
             return self.plain(*args)
+        # compiled code is silent about overflow and 0/0, so the plain source is too
+        if mode == "never":
+            with np.errstate(all="ignore"):
+                return self.plain(*args)
         expected = PER_ELEMENT * sum(a.size for a in arrays)
         if mode == "always" or "numba" in sys.modules or _spent + expected > LOADING_PAYS:
             return self.compiled(*args)
         start = time.perf_counter()
-        # compiled code is silent about overflow and 0/0, so the plain source is too
         with np.errstate(all="ignore"):
             result = self.plain(*args)
         _spent += time.perf_counter() - start
@@ -136,6 +139,7 @@ class Kernel:
 
         hasher = hashlib.sha256(repr(OPTIONS).encode())
         _hash_code(hasher, self.source.__code__)
+        hasher.update(repr(self.source.__defaults__).encode())
         for name in self.source.__code__.co_names:
             value = self.source.__globals__.get(name)
             if isinstance(value, int | float | str | tuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -9,50 +10,38 @@ import numpy as np
 
 from knotwork.errors import KnotError
 from knotwork.kernel import kernel
-from knotwork.numbers import Array, empty, numbers, require_finite
+from knotwork.numbers import Array, empty, in_arithmetic_of, real_numbers
 
 
 def sorted_knots(knots: Any, what: str = "knots") -> Array:
-    """Return `knots` as an array (float64 or exact) after checking that they are finite and nondecreasing."""
-    t = numbers(knots, what, KnotError)
+    """Return a copy of `knots` (float64 or exact) after checking that they are finite and nondecreasing."""
+    t = real_numbers(knots, what, KnotError, copy=True)
     if t.ndim != 1:
         raise KnotError(f"{what}: an array of shape {t.shape} given; expected a flat list")
-    if t.dtype.kind == "c":
-        raise KnotError(f"{what}: complex numbers given; expected real knots")
-    if t.dtype == np.float32:
-        t = t.astype(np.float64)
-    require_finite(t, what, KnotError)
     descents = t[1:] < t[:-1]
     if descents.any():
         i = int(np.argmax(descents))
         raise KnotError(f"{what}[{i}] = {t[i]} is above {what}[{i + 1}] = {t[i + 1]}; expected nondecreasing knots")
-    if t.dtype != object and len(t) and not np.isfinite(float(t[-1]) - float(t[0])):
+    if t.dtype != object and len(t) and not math.isfinite(t.item(-1) - t.item(0)):
         raise KnotError(f"{what} reach from {t[0]} to {t[-1]}: the difference overflows float64")
     return t
 
 
-def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:
-    """Return new knots sorted, in the arithmetic of `like`, after checking that they lie in `domain`."""
-    x = np.atleast_1d(numbers(knots, "new knots", KnotError))
+def some_knots(knots: Any, what: str, like: Array) -> Array:
+    """Return a number or a flat list of knots, in any order, sorted and in the arithmetic of `like`."""
+    x = np.atleast_1d(in_arithmetic_of(like, real_numbers(knots, what, KnotError), what, KnotError))
     if x.ndim != 1:
-        raise KnotError(f"new knots: an array of shape {x.shape} given; expected a number or a flat list")
-    if x.dtype.kind == "c":
-        raise KnotError("new knots: complex numbers given; expected real knots")
-    x = in_arithmetic_of(like, x, "new knots")
-    require_finite(x, "new knots", KnotError)
-    if (x[1:] < x[:-1]).any():
-        x = np.sort(x)
+        raise KnotError(f"{what}: an array of shape {x.shape} given; expected a number or a flat list")
+    return np.sort(x) if (x[1:] < x[:-1]).any() else x
+
+
+def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:
+    """Return new knots as `some_knots` does, after checking that they lie in `domain`."""
+    x = some_knots(knots, "new knots", like)
     if len(x) and (x[0] < domain[0] or x[-1] > domain[1]):
         outside = x[0] if x[0] < domain[0] else x[-1]
         raise KnotError(f"knot {outside} is outside the domain [{domain[0]}, {domain[1]}]")
     return x
-
-
-def in_arithmetic_of(like: Array, x: Array, what: str = "parameters") -> Array:
-    """Return `x` exact where `like` is exact, float64 otherwise."""
-    if like.dtype == object:
-        return x if x.dtype == object else numbers(x.astype(object), what, KnotError)
-    return x.astype(np.float64) if x.dtype != np.float64 else x
 
 
 def distinct(knots: Array) -> tuple[Array, Array]:
@@ -111,10 +100,12 @@ def nodes(knots: Array, degree: int, count: int) -> Array:
     """Return the nodes (Greville abscissae): the mean of knots i+1 … i+degree, for i below `count`."""
     if degree == 0:
         return knots[:count] + (knots[1 : count + 1] - knots[:count]) / 2
-    total = knots[1 : count + 1] / degree
+    mean = knots[1 : count + 1] / degree
     for j in range(2, degree + 1):
-        total = total + knots[j : count + j] / degree
-    return total
+        mean = mean + knots[j : count + j] / degree
+    # rounding may not take a mean beyond its knots
+    inside: Array = np.minimum(np.maximum(mean, knots[1 : count + 1]), knots[degree : count + degree])
+    return inside
 
 
 def turned(knots: Array, turn: Any, start: Any, end: Any) -> Array:

@@ -20,23 +20,57 @@ Array = NDArray[Any]
 _KEPT = {np.dtype(t) for t in (np.float64, np.float32, np.complex128, object)}
 
 
-def numbers(values: Any, what: str, error: type[KnotworkError]) -> Array:
-    """Return `values` as a C-ordered array in one of the kept arithmetics; `error` says what is wrong with `what`."""
-    if isinstance(values, np.ma.MaskedArray):
+def numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
+    """Return `values` as a C-ordered array in one of the kept arithmetics; `error` says what is wrong with `what`.
+
+    With `copy`, the array shares no memory with `values`.
+    """
+    if isinstance(values, np.ma.MaskedArray) or (
+        isinstance(values, list | tuple) and any(isinstance(v, np.ma.MaskedArray) for v in values)
+    ):
         raise error(f"{what}: a masked array was given; expected plain numbers")
     try:
         array = np.asarray(values, order="C")
+        if copy and not isinstance(values, list | tuple):
+            array = array.copy()
     except ValueError as exc:
         raise error(f"{what}: the rows have different lengths; expected a rectangular array") from exc
-    if array.dtype in _KEPT:
-        if array.dtype != object:
-            return array
+    if not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
+    if array.dtype == object:
+        if not isinstance(values, np.ndarray) and all(isinstance(x, int | float) for x in array.reshape(-1).tolist()):
+            raise error(f"{what}: an integer too large for float64 was given; expected finite numbers")
         return exact(array, what, error)
+    if array.dtype in _KEPT:
+        return array
     if array.dtype.kind in "biu" or array.dtype == np.float16:
         return array.astype(np.float64)
     if array.dtype == np.complex64:
         return array.astype(np.complex128)
     raise error(f"{what}: {array.dtype} given; expected numbers (float64, float32, complex128 or exact objects)")
+
+
+def real_numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
+    """Return finite real `values` as a float64 or exact array."""
+    x = numbers(values, what, error, copy)
+    if x.dtype.kind == "c" or (x.dtype == object and any(isinstance(v, complex) for v in x.reshape(-1).tolist())):
+        raise error(f"{what}: complex numbers given; expected real ones")
+    if x.dtype == np.float32:
+        x = x.astype(np.float64)
+    require_finite(x, what, error)
+    return x
+
+
+def in_arithmetic_of(like: Array, x: Array, what: str, error: type[KnotworkError]) -> Array:
+    """Return real numbers exact where `like` is exact, float64 otherwise."""
+    if like.dtype == object:
+        return x if x.dtype == object else exact(x, what, error)
+    if x.dtype == object:
+        try:
+            x = x.astype(np.float64)
+        except OverflowError:
+            raise error(f"{what}: a number too large for float64 was given; expected finite numbers") from None
+    return x
 
 
 def exact(array: Array, what: str, error: type[KnotworkError]) -> Array:
@@ -71,7 +105,7 @@ def require_finite(array: Array, what: str, error: type[KnotworkError]) -> None:
     """Raise `error`, naming the first place, unless all elements are finite."""
     if not all_finite(array):
         place, x = next((i, x) for i, x in np.ndenumerate(array) if not all_finite(np.asarray(x)))
-        raise error(f"{what}[{', '.join(map(str, place))}] is {x}; expected finite numbers")
+        raise error(f"{what}{list(place) if place else ''} is {x}; expected finite numbers")
 
 
 def empty(shape: tuple[int, ...], dtype: Any) -> Array:
@@ -86,9 +120,10 @@ def require_room(shape: tuple[int, ...], dtype: Any) -> None:
     for count in shape:
         size *= int(count)
     if size > 1 << 30 and size > _physical_memory():
+        wanted = f"{size / 1e9:.3g} GB" if size < 1 << 80 else "more than any machine has"
         raise SizeError(
-            f"the result would be {' × '.join(map(str, shape))} numbers ({size / 1e9:.3g} GB); "
-            f"this machine has {_physical_memory() / 1e9:.3g} GB"
+            f"the result would be {' × '.join(f'{n:.3g}' if n < 1 << 80 else 'too many' for n in shape)} numbers "
+            f"({wanted}); this machine has {_physical_memory() / 1e9:.3g} GB"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError
 from typing import Any, Self
@@ -12,16 +13,16 @@ from knotwork.errors import KnotError, ParameterError
 from knotwork.knots import (
     combine,
     distinct,
-    in_arithmetic_of,
     merged,
     multiplicities,
     new_knots,
     nodes,
     require_multiplicity,
+    some_knots,
     sorted_knots,
     turned,
 )
-from knotwork.numbers import Array, exact, numbers, require_room
+from knotwork.numbers import Array, exact, require_room
 
 _set = object.__setattr__
 
@@ -80,15 +81,11 @@ class SplineSpace(Frozen):
     _cache: dict[str, Any]
 
     def __init__(self, degree: int, knots: Any, *, periodic: bool = False) -> None:
-        if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
-            raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
-        degree = int(degree)
+        degree = require_degree(degree)
         t = sorted_knots(knots)
         require_enough(t, degree, periodic)
-        if t is knots or t.base is not None or not t.flags.owndata:
-            t = t.copy()
         if periodic:
-            require_one_end(t)
+            require_one_end(t, degree)
             require_multiplicity(t, degree)
         else:
             require_multiplicity(t, degree)
@@ -115,17 +112,17 @@ class SplineSpace(Frozen):
     @classmethod
     def clamped(cls, degree: int, n: int) -> Self:
         """Return the space of dimension `n` over [0, 1] with even interior knots and clamped ends."""
-        _require_dimension(degree, n, degree + 1)
+        _require_dimension(degree, n, require_degree(degree) + 1)
         inner = _even(n - degree)
         return cls(degree, np.concatenate([np.zeros(degree), inner, np.ones(degree)]))
 
     @classmethod
     def uniform(cls, degree: int, n: int, *, periodic: bool = False) -> Self:
         """Return the space of dimension `n` with evenly spaced knots and the domain [0, 1], not clamped."""
+        degree = require_degree(degree)
+        _require_dimension(degree, n, 1 if periodic else degree + 1)
         if periodic:
-            _require_dimension(degree, n, 1)
             return cls(degree, _even(n), periodic=True)
-        _require_dimension(degree, n, degree + 1)
         spans = n - degree
         outside = np.arange(1, degree + 1) / spans
         return cls(degree, np.concatenate([-outside[::-1], _even(spans), 1 + outside]))
@@ -136,7 +133,9 @@ class SplineSpace(Frozen):
 
         For degree 0 the pieces jump.
         """
+        degree = require_degree(degree)
         x = sorted_knots(breaks, "breaks")
+        require_room((len(x), degree + 1), np.float64)
         if len(x) < 2 or (x[1:] == x[:-1]).any():
             raise KnotError(
                 f"breaks: {len(x)} given, {len(distinct(x)[0])} distinct; expected two or more distinct breaks"
@@ -160,7 +159,7 @@ class SplineSpace(Frozen):
     def domain(self) -> tuple[Any, Any]:
         """The first and the last parameter value; a period if periodic."""
         n = 0 if self.periodic else self.degree
-        return self.knots[n], self.knots[-n - 1]
+        return self.knots.item(n), self.knots.item(-n - 1)
 
     @property
     def exact(self) -> bool:
@@ -196,10 +195,10 @@ class SplineSpace(Frozen):
         if not self.periodic:
             return self.knots, 0
         k = self.order
-        unrolled: tuple[Array, int] = self.cached("unrolled", lambda: (self._turns(-k, self.dimension + 2 * k), k))
+        unrolled: tuple[Array, int] = self.cached("unrolled", lambda: (self.turns(-k, self.dimension + 2 * k), k))
         return unrolled
 
-    def _turns(self, lo: int, hi: int) -> Array:
+    def turns(self, lo: int, hi: int) -> Array:
         """Return knots lo … hi of the periodic sequence: t[i + dimension] = t[i] + period."""
         t, n = self.knots, self.dimension
         turn, index = np.divmod(np.arange(lo, hi + 1), n)
@@ -247,6 +246,8 @@ class SplineSpace(Frozen):
         For equal degrees: `other` has all of these knots, end knots included, so that it is a refinement. For a higher
         degree of `other`: the same domain, and each knot inside it at least as many more times as the degree is higher.
         """
+        if not isinstance(other, SplineSpace):
+            return NotImplemented
         raised = other.degree - self.degree
         if raised < 0 or self.periodic != other.periodic or self.domain != other.domain:
             return False
@@ -283,12 +284,16 @@ class SplineSpace(Frozen):
             raise KnotError(f"the {name} of {self!r} and {other!r}: expected equal degrees, both periodic or neither")
         if self.domain != other.domain:
             raise KnotError(f"the {name} of spaces over {self.domain} and {other.domain}: expected equal domains")
-        result = type(self)(self.degree, combine(self.knots, other.knots, pick), periodic=self.periodic)
-        if result.domain != self.domain:
-            raise KnotError(
-                f"the {name} of spaces with different knots outside the domain {self.domain}: clamp them first"
-            )
-        return result
+        if not np.array_equal(self._outside, other._outside):
+            raise KnotError(f"the {name} of spaces with different knots outside {self.domain}: clamp them first")
+        return type(self)(self.degree, combine(self.knots, other.knots, pick), periodic=self.periodic)
+
+    @property
+    def _outside(self) -> Array:
+        """The knots beyond the domain."""
+        a, b = self.domain
+        beyond: Array = self.knots[(self.knots < a) | (self.knots > b)]
+        return beyond
 
     def with_knots(self, knots: Any) -> SplineSpace:
         """Return the space with further knots (a number or a list, in any order) inside the domain.
@@ -318,8 +323,7 @@ class SplineSpace(Frozen):
         KnotError
             If a knot is not there as often as it is to be removed, or if removing it would change the domain.
         """
-        x = np.atleast_1d(numbers(knots, "knots to remove", KnotError))
-        x = np.sort(in_arithmetic_of(self.knots, x, "knots to remove"))
+        x = some_knots(knots, "knots to remove", self.knots)
         if self.periodic:
             x = np.sort(np.where(x == self.knots[-1], self.knots[0], x))
         values, counts = distinct(x)
@@ -340,6 +344,13 @@ class SplineSpace(Frozen):
         return SplineSpace.trusted(self.degree, exact(self.knots, "knots", KnotError), self.periodic)
 
 
+def require_degree(degree: Any) -> int:
+    """Return a degree as an int, or raise."""
+    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
+        raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
+    return int(degree)
+
+
 def require_enough(knots: Array, degree: int, periodic: bool) -> None:
     """Raise unless there are knots for at least one control point."""
     least = 2 if periodic else 2 * degree + 2
@@ -348,7 +359,7 @@ def require_enough(knots: Array, degree: int, periodic: bool) -> None:
         raise KnotError(f"{len(knots)} knots given; {kind} needs at least {least}")
 
 
-def require_one_end(knots: Array) -> None:
+def require_one_end(knots: Array, degree: int) -> None:
     """Raise unless the end of the period occurs once, after the start: the seam counts at the start."""
     if knots[-1] == knots[0]:
         raise KnotError(f"the period [{knots[0]}, {knots[-1]}] is empty; expected distinct end knots")
@@ -357,11 +368,14 @@ def require_one_end(knots: Array) -> None:
             f"the end {knots[-1]} of the period is given {int(np.sum(knots == knots[-1]))} times; expected once: "
             f"the seam is counted at the start of the period"
         )
+    turns = 2 + 3 * (degree + 1) // (len(knots) - 1)
+    if knots.dtype != object:
+        a, b = knots.item(0), knots.item(-1)
+        if not math.isfinite(max(abs(a), abs(b)) + turns * (b - a)):
+            raise KnotError(f"the period [{a}, {b}] continued around the seam overflows float64")
 
 
 def _require_dimension(degree: int, n: int, least: int) -> None:
-    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
-        raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
     if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < least:
         raise ParameterError(f"dimension {n!r} given; degree {degree} needs at least {least}")
     require_room((n + 2 * degree + 2,), np.float64)

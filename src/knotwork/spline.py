@@ -13,9 +13,9 @@ from knotwork.banded import Banded, apply_rows
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import CHUNK, Basis, contract, parameters
 from knotwork.kernel import extent
-from knotwork.numbers import Array, empty, exact, numbers, require_finite
+from knotwork.numbers import Array, empty, exact, in_arithmetic_of, numbers, require_finite
 from knotwork.parallel import in_parts
-from knotwork.space import Frozen, SplineSpace
+from knotwork.space import Frozen, SplineSpace, require_degree
 
 _set = object.__setattr__
 
@@ -54,10 +54,11 @@ class Spline(Frozen):
     _points: Array | None
 
     def __init__(self, spaces: SplineSpace | Sequence[SplineSpace], coefficients: Any, rational: bool = False) -> None:
-        spaces = (spaces,) if isinstance(spaces, SplineSpace) else tuple(spaces)
+        spaces = (spaces,) if isinstance(spaces, SplineSpace) else spaces
+        spaces = tuple(spaces) if isinstance(spaces, list | tuple) else ()
         if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
             raise KnotError(f"spaces {spaces!r} given; expected one SplineSpace a parameter")
-        given = numbers(coefficients, "coefficients", PointError)
+        given = numbers(coefficients, "coefficients", PointError, copy=True)
         counts = tuple(space.dimension for space in spaces)
         k = len(counts)
         if given.ndim not in (k, k + 1) or given.shape[:k] != counts:
@@ -76,8 +77,6 @@ class Spline(Frozen):
         if given.dtype == object or any(space.exact for space in spaces):
             given = given if given.dtype == object else exact(given, "coefficients", PointError)
             spaces = tuple(space.in_exact_arithmetic() for space in spaces)
-        if given is coefficients or not given.flags.owndata:
-            given = given.copy()
         self._fill(spaces, given, bool(rational))
 
     def _fill(self, spaces: tuple[SplineSpace, ...], coefficients: Array, rational: bool) -> None:
@@ -233,6 +232,8 @@ class Spline(Frozen):
             ``[i]`` is the i-th derivative of a curve, ``[i, j]`` the derivative ∂ᵢᵤ∂ⱼᵥ of a surface. Rational splines
             are differentiated by the quotient rule. At a knot, the derivative from the right.
         """
+        if not u_and_order:
+            raise ParameterError("no parameters given; expected them and then the order of derivative")
         *u, order = u_and_order
         self._require_count(u)
         if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
@@ -252,10 +253,9 @@ class Spline(Frozen):
             wide = np.broadcast_arrays(*x) if k > 1 else x
         except ValueError:
             raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
-        shape, count = wide[0].shape, wide[0].size
-        flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
-        B = self._width
+        shape, count, B = wide[0].shape, wide[0].size, self._width
         out = empty((*(r + 1 for r in orders), count, B), self.coefficients.dtype)
+        flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
         bases = [Basis(space, count) for space in self.spaces]
         P = self._padded().reshape(-1, B)
 
@@ -286,9 +286,9 @@ class Spline(Frozen):
         """Return derivatives at all combinations of flat parameter arrays: one banded matrix an axis."""
         if any(v.ndim != 1 for v in x):
             raise ParameterError(f"grid=True takes flat arrays; parameters of shapes {[v.shape for v in x]} given")
-        rows = [Basis(s, len(v)).rows(v, r) for s, v, r in zip(self.spaces, x, orders, strict=True)]
         shape = (*(r + 1 for r in orders), *(len(v) for v in x), *self.coefficients.shape[len(x) :])
         out = empty(shape, self.coefficients.dtype)
+        rows = [Basis(s, len(v)).rows(v, r) for s, v, r in zip(self.spaces, x, orders, strict=True)]
         for index in itertools.product(*(range(r + 1) for r in orders)):
             values = self.coefficients
             for axis, ((first, E), r) in enumerate(zip(rows, index, strict=True)):
@@ -319,31 +319,35 @@ class Spline(Frozen):
         matrix : array_like, shape (e, d), or a number
         shift : array_like, shape (e,), or a number
         """
-        k = len(self.spaces)
-        A = numbers(matrix, "matrix", PointError)
-        b = numbers(shift, "shift", PointError)
-        for array, name in ((A, "matrix"), (b, "shift")):
-            require_finite(array, name, PointError)
-        if self.coefficients.dtype == object:
-            A, b = (v if v.dtype == object else exact(v, "transform", PointError) for v in (A, b))
+        k, dtype = len(self.spaces), self.coefficients.dtype
+        A, b = self._in_our_arithmetic(matrix, "matrix"), self._in_our_arithmetic(shift, "shift")
         if A.ndim == 0:
             A = A * np.eye(self.dim, dtype=int)
-        if A.ndim != 2 or A.shape[1] != self.dim or b.shape not in ((), (A.shape[0],)):
+        if A.ndim != 2 or A.shape[1] != self.dim or not len(A) or b.shape not in ((), (A.shape[0],)):
             raise PointError(
                 f"matrix of shape {A.shape} and shift of shape {b.shape} given; expected ({self.dim}, {self.dim}) and "
                 f"({self.dim},), or as many rows as the new points have coordinates"
             )
         flat = self.coefficients.reshape(-1, self._width)
         points, weights = (flat[:, :-1], flat[:, -1:]) if self.rational else (flat, None)
-        moved = points @ A.T + (b if weights is None else weights * b)
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = points @ A.T + (b if weights is None else weights * b)
         if weights is not None:
             moved = np.concatenate([moved, weights], axis=1)
         shape = self.coefficients.shape[:k] if self.scalar and len(A) == 1 else (*self.coefficients.shape[:k], -1)
-        result = np.ascontiguousarray(moved.reshape(shape))
-        if result.dtype != self.coefficients.dtype and result.dtype.kind == self.coefficients.dtype.kind:
-            result = result.astype(self.coefficients.dtype)
+        result = np.ascontiguousarray(moved.reshape(shape), None if moved.dtype.kind == "c" else dtype)
         require_finite(result, "transformed points", PointError)
         return Spline.trusted(self.spaces, result, self.rational)
+
+    def _in_our_arithmetic(self, values: Any, what: str) -> Array:
+        """Return finite numbers as exact as the spline; only where points may be complex can they be."""
+        x = numbers(values, what, PointError)
+        require_finite(x, what, PointError)
+        if x.dtype.kind == "c":
+            if self.rational or self.coefficients.dtype == object:
+                raise PointError(f"{what}: complex numbers given; this spline takes real ones")
+            return x
+        return in_arithmetic_of(self.coefficients, x, what, PointError)
 
     def reverse(self, axis: int = 0) -> Spline:
         """Return the spline run backwards in one parameter: u becomes a + b - u over the same domain [a, b]."""
@@ -491,9 +495,7 @@ def _outer_product(arrays: list[Array]) -> Array:
 
 def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> SplineSpace:
     """Return the space of `count` control points, or say which count fits."""
-    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
-        raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
-    degree = int(degree)
+    degree = require_degree(degree)
     if knots is None:
         least = 1 if periodic else degree + 1
         if count < least:
@@ -523,7 +525,8 @@ def _assemble(spaces: tuple[SplineSpace, ...], P: Array, weights: Any) -> Spline
     points = P[..., None] if P.ndim == k else P
     require_finite(points, "points", PointError)
     dtype = points.dtype
-    homogeneous = np.concatenate([points * w[..., None], w[..., None]], axis=-1).astype(dtype)
+    with np.errstate(over="ignore"):  # said better by Spline
+        homogeneous = np.concatenate([points * w[..., None], w[..., None]], axis=-1).astype(dtype)
     return Spline(spaces, homogeneous, rational=True)
 
 

@@ -24,7 +24,7 @@ from knotwork.spline import Spline
 def elevation_rows(U, W, stop, n, lo, start, E, x, row):  # type: ignore[no-untyped-def]
     """Rows lo, lo+1, … of the matrix that raises the degree from n to n + 1.
 
-    W holds each break once: U and W merged are the raised knots. The window of n + 1 of them has the old knots
+    W holds each break once, U and W merged are the raised knots. The window of n + 1 of them has the old knots
     U[lu … hu-1] and the new ones W[lw … hw-1]; leaving out a value that occurs m times in it counts m times.
     """
     lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n + 1)
@@ -46,25 +46,26 @@ def elevation_rows(U, W, stop, n, lo, start, E, x, row):  # type: ignore[no-unty
             E[i, r] = U[0] - U[0]
         old, new = lu, lw
         while old < hu or new < hw:
-            # the next value of the window, its copies, and whether the one new knot is among them
+            # the next value of the window, and its old and new copies
             value = U[old] if new >= hw or (old < hu and U[old] <= W[new]) else W[new]
-            copies, is_new = 0, 0
+            copies, fresh = 0, 0
             while old < hu and U[old] == value:
                 old += 1
                 copies += 1
-            if new < hw and W[new] == value:
+            while new < hw and W[new] == value:
                 new += 1
-                is_new = 1
-            # leave out the new copy; where the window cuts it off, the last old one
+                fresh += 1
+            # leave out a new copy; where the window cuts those off, the last old one
+            left_out = min(fresh, 1)
             v = 0
             for k in range(lw, hw):
-                if W[k] != value:
+                if k != new - left_out or fresh == 0:
                     x[v] = W[k]
                     v += 1
-            discrete_bsplines(U, lu, hu - 1 + is_new, x, 0, v, row, 0)
+            discrete_bsplines(U, lu, hu - 1 + left_out, x, 0, v, row, 0)
             column = lu - 1 - v - start[i]
             for r in range(v + 1):
-                E[i, column + r] += (copies + is_new) * row[0, r] / (n + 1)
+                E[i, column + r] += (copies + fresh) * row[0, r] / (n + 1)
 
 
 def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
@@ -105,15 +106,19 @@ def raised(space: SplineSpace) -> tuple[SplineSpace, Banded]:
     """Return the space of one degree more that holds `space`, and the matrix that takes control points there."""
     n = space.degree
     t, zero = space.unrolled
-    breaks = distinct(t)[0]
-    T = merged(t, breaks)
-    a, b = space.domain
     if space.periodic:
-        period = space.knots[:-1]
-        knots = np.append(merged(period, distinct(period)[0]), space.knots[-1:])
-        lo, rows = int(np.searchsorted(T, a, "left")), len(knots) - 1
+        once = SplineSpace.trusted(0, distinct(space.knots)[0], periodic=True)
+        turns = 2 + len(t) // space.dimension
+        breaks = once.turns(-turns * once.dimension, turns * once.dimension)
+        cut = int(np.searchsorted(breaks, t[0], "left"))
+        breaks = breaks[cut : np.searchsorted(breaks, t[-1], "right")]
+        knots = np.append(merged(space.knots[:-1], once.knots[:-1]), space.knots[-1:])
+        lo, rows = zero + turns * once.dimension - cut, len(knots) - 1
     else:
         # the functions of degree n + 1 that live in the domain
+        breaks = distinct(t)[0]
+        T = merged(t, breaks)
+        a, b = space.domain
         lo = int(np.searchsorted(T, a, "right")) - n - 2
         rows = int(np.searchsorted(T, b, "left")) - lo
         knots = T[lo : lo + rows + n + 2].copy()

@@ -47,10 +47,10 @@ def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
     [[0.0, 0.0], [0.5, 1.0], [2.0, 2.0], [3.5, 1.0], [4.0, 0.0]]
     """
     spaces = spline.spaces
-    if axis or len(spaces) > 1:
+    if type(axis) is not int or axis:
         axis = spline.axis(axis)
     space = spaces[axis]
-    if isinstance(knots, list | tuple | np.ndarray) and len(knots) == 1:
+    if isinstance(knots, list | tuple) and len(knots) == 1 and isinstance(knots[0], float):
         knots = knots[0]
     if isinstance(knots, float) and not space.periodic and not space.exact:
         return _one(spline, knots, axis)

@@ -10,7 +10,7 @@ from knotwork.calculus import as_blocks
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.merge import refined
 from knotwork.knots import distinct, merged, new_knots, sorted_knots
-from knotwork.numbers import Array, exact, numbers
+from knotwork.numbers import Array, exact, numbers, real_numbers
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -57,14 +57,14 @@ def trim(spline: Spline, a: Any, b: Any, axis: int = 0) -> Spline:
     axis = spline.axis(axis)
     space = spline.spaces[axis]
     start, end = space.domain
-    ends = numbers([a, b], "ends", ParameterError)
+    ends = real_numbers([a, b], "ends", ParameterError)
     if ends.shape != (2,) or not ends[0] < ends[1]:
         raise ParameterError(f"trim from {a} to {b}: expected two numbers, the first below the second")
     if space.periodic and end < ends[1] <= ends[0] + (end - start) and start <= ends[0] < end:
         spline = _two_turns(spline, axis)
         space = spline.spaces[axis]
     x, y = (_inside(space, v) for v in (a, b))
-    return _restrict(spline, axis, x, y, keep_start=not space.periodic, keep_end=not space.periodic)
+    return _restrict(spline, axis, x, y)
 
 
 def to_bezier(spline: Spline) -> tuple[Array, Any]:
