@@ -90,7 +90,7 @@ class Scipy:
     def bezier(t, n, P):
         from scipy.interpolate import BSpline, PPoly
 
-        return PPoly.from_spline(BSpline(t, P, n)).c
+        return [PPoly.from_spline(BSpline(t, np.ascontiguousarray(x), n)).c for x in P.T]
 
 
 class Pantr:
@@ -143,7 +143,7 @@ class Splipy:
 
     @staticmethod
     def insert(t, n, P, new):
-        if len(P) > 1000:
+        if len(P) + np.size(new) > 1001:  # quadratic
             return None
         from splipy import BSplineBasis, Curve
 

@@ -6,14 +6,14 @@ import itertools
 from fractions import Fraction
 
 import numpy as np
-import oracle
 import pytest
-import strategies as kinds
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 import knotwork as kw
+import oracle
+import strategies as kinds
 from knotwork import Spline, SplineSpace
 from knotwork.errors import ParameterError
 

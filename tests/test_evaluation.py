@@ -8,14 +8,14 @@ from fractions import Fraction
 
 import mpmath
 import numpy as np
-import oracle
 import pytest
-import strategies as kinds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 import knotwork as kw
+import oracle
+import strategies as kinds
 from knotwork import Spline, SplineSpace
 
 F = Fraction

@@ -6,10 +6,10 @@ import time
 from fractions import Fraction
 
 import numpy as np
-import oracle
 import pytest
 
 import knotwork as kw
+import oracle
 from knotwork import Spline, SplineSpace
 
 EPS = np.finfo(float).eps

@@ -8,10 +8,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-import strategies as kinds
 from hypothesis import given
 from hypothesis import strategies as st
 
+import strategies as kinds
 from knotwork import SplineSpace
 from knotwork.errors import KnotError
 from knotwork.knots import combine, distinct, merged, nodes, require_multiplicity, sorted_knots

@@ -8,16 +8,16 @@ import pickle
 from fractions import Fraction
 
 import numpy as np
-import oracle
 import pytest
-import strategies as kinds
 from hypothesis import given
 from hypothesis import strategies as st
-from test_space import Wrapper
 
 import knotwork as kw
+import oracle
+import strategies as kinds
 from knotwork import Spline, SplineSpace
 from knotwork.errors import ParameterError
+from test_space import Wrapper
 
 F = Fraction
 

@@ -8,13 +8,13 @@ from collections import Counter
 from fractions import Fraction
 
 import numpy as np
-import oracle
 import pytest
-import strategies as kinds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import knotwork as kw
+import oracle
+import strategies as kinds
 from knotwork import Spline
 from knotwork.conversion.elevation import raised
 from knotwork.errors import ParameterError, SizeError

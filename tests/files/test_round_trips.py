@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays as numpy_arrays
-from strategies import spaces
 
 import knotwork as kw
 from knotwork.files import arrays, structured
+from strategies import spaces
 
 #: every finite float, the smallest and −0.0 included
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)

@@ -7,13 +7,13 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import oracle
 import pytest
-import strategies as kinds
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import knotwork as kw
+import oracle
+import strategies as kinds
 from knotwork import Spline, SplineSpace
 from knotwork.errors import KnotError, ParameterError, PointError
 

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import curves
 
 import knotwork as kw
 from knotwork.errors import FileError
 from knotwork.files import read, write
 from knotwork.files.svg import decode, encode
 from knotwork.files.svg.cubics import cubics, distance, halves, hermite
+from strategies import curves
 
 
 def segments(data: bytes) -> list[list[tuple[str, list[float]]]]:
