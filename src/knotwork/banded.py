@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Self
 
 import numpy as np
@@ -59,6 +60,18 @@ def pack(first, last, E, limit, wraps):  # type: ignore[no-untyped-def]
             else:
                 E[i, r] = E[i, r - shift]
         first[i] -= shift
+
+
+def as_blocks(P: Array, axis: int) -> Array:
+    """View C-ordered coefficients as (A, n, B) with the axis in question in the middle."""
+    if axis == 0:
+        return P.reshape(1, len(P), -1)
+    return P.reshape(math.prod(P.shape[:axis]), P.shape[axis], -1)
+
+
+def along(blocks: Array, like: Array, axis: int) -> Array:
+    """Return blocks (A, m, B) as coefficients of the shape of `like`, with m along the axis."""
+    return blocks.reshape(*like.shape[:axis], blocks.shape[1], *like.shape[axis + 1 :])
 
 
 class Banded(Frozen):
@@ -125,16 +138,14 @@ class Banded(Frozen):
 
     def apply(self, array: Array, axis: int) -> Array:
         """Return `array` with the matrix applied along one axis."""
-        shape = array.shape
-        B = int(np.prod(shape[axis + 1 :], dtype=np.int64))
-        P = array.reshape(-1 if B else 0, shape[axis], B) if B else array.reshape(0, shape[axis], 0)
+        P = as_blocks(array, axis)
         width = self.entries.shape[1]
         if self.wraps:
             P = np.ascontiguousarray(P[:, np.arange(self.columns + width - 1) % self.columns])
         E = in_arithmetic_of(P, self.entries, "entries", PointError) if P.dtype == object else self.entries
-        out = empty((len(P), len(self.first), B), E.dtype if E.dtype == object else P.dtype)
-        apply_rows(self.first, E, P, out, extent(B))
-        return out.reshape(*shape[:axis], len(self.first), *shape[axis + 1 :])
+        out = empty((len(P), len(self.first), P.shape[2]), E.dtype if E.dtype == object else P.dtype)
+        apply_rows(self.first, E, P, out, extent(P.shape[2]))
+        return along(out, array, axis)
 
     def toarray(self) -> Array:
         """Return the matrix with its zeros, shape (rows, columns)."""

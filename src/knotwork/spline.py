@@ -10,6 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from knotwork.banded import Banded, apply_rows
+from knotwork.calculus import antiderivative, derivative
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import CHUNK, Basis, contract, parameters
 from knotwork.kernel import extent
@@ -386,16 +387,48 @@ class Spline(Frozen):
         return Spline.trusted(spaces, exact(self.coefficients, "coefficients", PointError), self.rational)
 
     def derivative(self, axis: int = 0, order: int = 1) -> Spline:
-        """Return the derivative in one parameter as a spline; see `knotwork.calculus.derivative`."""
-        from knotwork.calculus import derivative
+        """Return the derivative in one parameter as a spline of lower degree.
 
-        return derivative(self, axis, order)
+        Jumps are left out of it: the derivative is that of the pieces. Above the degree it is zero, of degree 0.
+
+        Parameters
+        ----------
+        axis : int
+            Which parameter.
+        order : int
+            How many times.
+
+        Raises
+        ------
+        ParameterError
+            If the spline is rational: then `derivatives` gives values, by the quotient rule.
+        """
+        axis = self.axis(axis)
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
+            raise ParameterError(f"order of derivative {order!r} given; expected an integer of at least 0")
+        self._require_polynomial("derivative")
+        space, coefficients = self.spaces[axis], self.coefficients
+        for _ in range(min(int(order), space.degree + 1)):
+            space, coefficients = derivative(space, coefficients, axis)
+        return self.with_axis(axis, space, coefficients)
 
     def antiderivative(self, axis: int = 0) -> Spline:
-        """Return the integral from the start of the domain as a spline; see `knotwork.calculus.antiderivative`."""
-        from knotwork.calculus import antiderivative
+        """Return the integral in one parameter, zero at the start of the domain, as a spline of degree one higher.
 
-        return antiderivative(self, axis)
+        The integral of a periodic spline over its period is returned as an ordinary spline: it need not close.
+
+        Raises
+        ------
+        ParameterError
+            If the spline is rational: its integral is not a spline.
+        """
+        axis = self.axis(axis)
+        self._require_polynomial("antiderivative")
+        return self.with_axis(axis, *antiderivative(self.spaces[axis], self.coefficients, axis))
+
+    def _require_polynomial(self, what: str) -> None:
+        if self.rational:
+            raise ParameterError(f"a rational spline has no {what} of this kind; derivatives(u, order) gives values")
 
 
 def curve(points: Any, degree: int = 3, knots: Any = None, weights: Any = None, periodic: bool = False) -> Spline:

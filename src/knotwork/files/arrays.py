@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from knotwork.errors import FileError
-from knotwork.files.structured import checked
+from knotwork.files.entry import checked
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline

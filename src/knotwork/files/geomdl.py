@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from knotwork.errors import FileError, PointError
-from knotwork.files.structured import Entry, checked
+from knotwork.files.entry import Entry, checked
 from knotwork.numbers import Array, require_finite
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline

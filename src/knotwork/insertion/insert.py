@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import Banded
-from knotwork.calculus import as_blocks
+from knotwork.banded import Banded, along, as_blocks
 from knotwork.errors import KnotError
 from knotwork.insertion.boehm import boehm
 from knotwork.insertion.merge import refined, rows_of_matrix
@@ -72,8 +71,7 @@ def _one(spline: Spline, u: float, axis: int) -> Spline:
     m = boehm(t, blocks, n, n, N - 1, u, s, W, extent(B))
     if m > n:
         raise KnotError(f"knot {u} has multiplicity {m + 1}; degree {n} allows at most {n + 1}")
-    shape = P.shape
-    return spline.with_axis(axis, SplineSpace.trusted(n, s), W.reshape(*shape[:axis], N + 1, *shape[axis + 1 :]))
+    return spline.with_axis(axis, SplineSpace.trusted(n, s), along(W, P, axis))
 
 
 def refine_to(spline: Spline, axis: int, target: SplineSpace, new: Array) -> Spline:
@@ -86,8 +84,7 @@ def refine_to(spline: Spline, axis: int, target: SplineSpace, new: Array) -> Spl
     else:
         t, W, stop, lo = space.knots, new, space.dimension, 0
     out = refined(t, W, stop, n, P, lo, target.dimension)
-    shape = spline.coefficients.shape
-    return spline.with_axis(axis, target, out.reshape(*shape[:axis], target.dimension, *shape[axis + 1 :]))
+    return spline.with_axis(axis, target, along(out, spline.coefficients, axis))
 
 
 def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int]:

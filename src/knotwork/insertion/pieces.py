@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.calculus import as_blocks
+from knotwork.banded import along, as_blocks
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.merge import refined
 from knotwork.knots import distinct, merged, new_knots, sorted_knots
@@ -173,12 +173,8 @@ def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = F
     lo = 0 if keep_start else int(np.searchsorted(T, a, "left"))
     hi = len(T) if keep_end else int(np.searchsorted(T, b, "right"))
     P = refined(t, new, space.dimension, n, as_blocks(opened.coefficients, axis), lo, hi - n - 1 - lo)
-    shape = opened.coefficients.shape
-    return opened.with_axis(
-        axis,
-        SplineSpace.trusted(n, T if len(T) == hi - lo else T[lo:hi].copy()),
-        P.reshape(*shape[:axis], hi - n - 1 - lo, *shape[axis + 1 :]),
-    )
+    knots = T if len(T) == hi - lo else T[lo:hi].copy()
+    return opened.with_axis(axis, SplineSpace.trusted(n, knots), along(P, opened.coefficients, axis))
 
 
 def _opened(spline: Spline, axis: int) -> Spline:
@@ -207,7 +203,7 @@ def _two_turns(spline: Spline, axis: int) -> Spline:
 
 def _in_pieces(P: Array, axis: int, space: SplineSpace) -> Array:
     """Return coefficients along one axis with every break of the domain of multiplicity degree + 1, clamped."""
-    n, t, shape = space.degree, space.knots, P.shape
+    n, t = space.degree, space.knots
     a, b = space.domain
     blocks, stop = as_blocks(P, axis), space.dimension
     if space.periodic:
@@ -216,4 +212,4 @@ def _in_pieces(P: Array, axis: int, space: SplineSpace) -> Array:
     values, counts = distinct(t[np.searchsorted(t, a, "left") : np.searchsorted(t, b, "right")])
     rows = (len(values) - 1) * (n + 1)
     out = refined(t, np.repeat(values, n + 1 - counts), stop, n, blocks, int(np.searchsorted(t, a, "left")), rows)
-    return out.reshape(*shape[:axis], rows, *shape[axis + 1 :])
+    return along(out, P, axis)

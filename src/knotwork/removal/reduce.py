@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.calculus import as_blocks
+from knotwork.banded import along, as_blocks
 from knotwork.errors import ParameterError
 from knotwork.insertion.insert import matrix_to, refine_to
 from knotwork.knots import distinct, multiplicities
@@ -224,10 +224,7 @@ class Original:
         c = least_squares(A, self.weight, self.d, self._pinned(space))
         other, n, inner = self.shape[0], space.dimension, self.shape[2]
         blocks = np.ascontiguousarray(c.reshape(n, other, inner).transpose(1, 0, 2))
-        shape = self.spline.coefficients.shape
-        coefficients = blocks.reshape(*shape[: self.axis], n, *shape[self.axis + 1 :]).astype(
-            self.spline.coefficients.dtype
-        )
+        coefficients = along(blocks, self.spline.coefficients, self.axis).astype(self.spline.coefficients.dtype)
         spline = self.spline.with_axis(self.axis, space, coefficients)
         return Trial(spline, self.difference(spline, gone))
 
