@@ -29,7 +29,7 @@ MODES = ("auto", "always", "never")
 #: seconds of plain work that pay for importing Numba and fetching the first kernels from the cache
 LOADING_PAYS = 0.4
 #: seconds of plain work per array element, roughly: what a kernel is expected to cost before it is timed
-PER_ELEMENT = 0.35e-6
+PER_ELEMENT = 1e-6
 #: dimensions up to this one are known to the compiler, which unrolls the loops over them
 UNROLLED = 5
 

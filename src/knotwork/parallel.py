@@ -33,6 +33,10 @@ def _pool(workers: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(workers, thread_name_prefix="knotwork")
 
 
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)  # threads do not survive a fork
+
+
 def in_parts(work: Callable[[int, int], None], count: int, size: int) -> None:
     """Call work(lo, hi) so that the parts cover range(count); in parallel if `size` numbers are worth it."""
     parts = 1 if size < WORTH_A_THREAD else min(processors(), count, size // (WORTH_A_THREAD // 2))

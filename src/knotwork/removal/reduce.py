@@ -119,6 +119,11 @@ def reduce(spline: Spline, tolerance: Any, *, progress: Progress | None = None) 
     ParameterError
         If the tolerance is negative or not finite, or the spline has several parameters.
 
+    Notes
+    -----
+    The method of Lyche and Mørken (1987): knots are ranked, and a search finds how many of the cheapest can go. The
+    bound is proven; that no curve with fewer knots would do is not, for the search is a heuristic.
+
     Examples
     --------
     >>> import numpy as np, knotwork as kw
