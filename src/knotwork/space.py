@@ -332,10 +332,12 @@ class SplineSpace(Frozen):
         if lacking.any():
             i = int(np.argmax(lacking))
             raise KnotError(f"knot {values[i]} is there {found[i]} times; cannot remove it {counts[i]} times")
-        left = SplineSpace(self.degree, combine(self.knots, x, np.subtract), periodic=self.periodic)
-        if left.domain != self.domain:
-            raise KnotError(f"without these knots the domain {self.domain} would become {left.domain}")
-        return left
+        kept = combine(self.knots, x, np.subtract)
+        n = 0 if self.periodic else self.degree
+        if len(kept) < 2 * n + 2 or (kept[n], kept[-n - 1]) != self.domain:
+            a, b = self.domain
+            raise KnotError(f"without these knots the domain would no longer be [{a}, {b}]; expected knots inside it")
+        return SplineSpace(self.degree, kept, periodic=self.periodic)
 
     def in_exact_arithmetic(self) -> SplineSpace:
         """Return the same space with each float knot as the Fraction of the same value."""

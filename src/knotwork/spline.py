@@ -55,28 +55,32 @@ class Spline(Frozen):
     _points: Array | None
 
     def __init__(self, spaces: SplineSpace | Sequence[SplineSpace], coefficients: Any, rational: bool = False) -> None:
+        self._check(spaces, coefficients, rational, "coefficients")
+
+    def _check(self, spaces: Any, coefficients: Any, rational: bool, what: str) -> None:
+        """Fill in what was given after checking it; `what` the user calls the coefficients."""
         spaces = (spaces,) if isinstance(spaces, SplineSpace) else spaces
         spaces = tuple(spaces) if isinstance(spaces, list | tuple) else ()
         if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
             raise KnotError(f"spaces {spaces!r} given; expected one SplineSpace a parameter")
-        given = numbers(coefficients, "coefficients", PointError, copy=True)
+        given = numbers(coefficients, what, PointError, copy=True)
         counts = tuple(space.dimension for space in spaces)
         k = len(counts)
         if given.ndim not in (k, k + 1) or given.shape[:k] != counts:
             wanted = ", ".join(map(str, counts))
             raise PointError(
-                f"coefficients of shape {given.shape} given; the spaces of dimension {wanted} take shape "
+                f"{what} of shape {given.shape} given; the spaces of dimension {wanted} take shape "
                 f"({wanted}{',' if k == 1 else ''}) or ({wanted}, d)"
             )
         if given.ndim == k + 1 and given.shape[k] == (1 if rational else 0):
-            raise PointError(f"coefficients of shape {given.shape} given: the points have no coordinates")
-        require_finite(given, "coefficients", PointError)
+            raise PointError(f"{what} of shape {given.shape} given: the points have no coordinates")
+        require_finite(given, what, PointError)
         if rational:
             if given.ndim == k or given.dtype.kind == "c":
                 raise PointError("a rational spline takes real homogeneous coordinates: the last one is the weight")
             _require_positive(given[..., -1])
         if given.dtype == object or any(space.exact for space in spaces):
-            given = given if given.dtype == object else exact(given, "coefficients", PointError)
+            given = given if given.dtype == object else exact(given, what, PointError)
             spaces = tuple(space.in_exact_arithmetic() for space in spaces)
         self._fill(spaces, given, bool(rational))
 
@@ -544,7 +548,9 @@ def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> Sp
 def _assemble(spaces: tuple[SplineSpace, ...], P: Array, weights: Any) -> Spline:
     """Return the spline of plain points and optional weights."""
     if weights is None:
-        return Spline(spaces, P)
+        spline = Spline.__new__(Spline)
+        spline._check(spaces, P, False, "points")
+        return spline
     w = numbers(weights, "weights", PointError)
     k = len(spaces)
     if w.shape != P.shape[:k]:

@@ -200,7 +200,7 @@ class Original:
 
     def reported(self, bound: Array) -> Any:
         """Return the bound as the tolerance was given: a number, or one a component."""
-        return bound.max() if self.one_number else bound
+        return bound.max(keepdims=True).item() if self.one_number else bound
 
     def difference(self, other: Spline, gone: Array) -> Array:
         """Return the largest coefficient of the difference to a spline without the knots `gone`.
