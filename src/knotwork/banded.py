@@ -64,9 +64,7 @@ def pack(first, last, E, limit, wraps):  # type: ignore[no-untyped-def]
 
 def as_blocks(P: Array, axis: int) -> Array:
     """View C-ordered coefficients as (A, n, B) with the axis in question in the middle."""
-    if axis == 0:
-        return P.reshape(1, len(P), -1)
-    return P.reshape(math.prod(P.shape[:axis]), P.shape[axis], -1)
+    return P.reshape(math.prod(P.shape[:axis]), P.shape[axis], math.prod(P.shape[axis + 1 :]))
 
 
 def along(blocks: Array, like: Array, axis: int) -> Array:

@@ -1,14 +1,18 @@
-"""Values of B-splines: which interval holds a parameter, and the basis functions that live there."""
+"""Values of splines: which interval holds a parameter, the basis functions that live there, and their sums."""
 
 from __future__ import annotations
 
+import itertools
+import math
 from typing import Any
 
 import numpy as np
 
+from knotwork.banded import Banded, apply_rows
 from knotwork.errors import ParameterError
 from knotwork.kernel import extent, kernel
 from knotwork.numbers import Array, empty, in_arithmetic_of, real_numbers, require_finite
+from knotwork.parallel import in_parts
 from knotwork.space import SplineSpace
 
 #: parameters evaluated at a time, so that their basis functions stay in the cache
@@ -167,3 +171,90 @@ def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
         wrong = x.reshape(-1)[int(np.argmax(outside))]
         raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]; extrapolate=True allows it")
     return x
+
+
+def scattered(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Array], order: int) -> Array:
+    """Return all derivatives up to an order at points whose parameters broadcast, a chunk at a time.
+
+    The result has shape (order + 1, …, *broadcast shape, d), with as many first axes as parameters.
+    """
+    k = len(spaces)
+    try:
+        wide = np.broadcast_arrays(*x) if k > 1 else x
+    except ValueError:
+        raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
+    shape, count = wide[0].shape, wide[0].size
+    P = _padded(spaces, coefficients)
+    counts = P.shape[:k]
+    P = P.reshape(math.prod(counts), -1)
+    out = empty((*(order + 1,) * k, count, P.shape[1]), P.dtype)
+    flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
+    bases = [Basis(space, count) for space in spaces]
+
+    def part(start: int, stop: int) -> None:
+        for lo in range(start, stop, CHUNK):
+            some = slice(lo, min(lo + CHUNK, stop))
+            rows = [basis.rows(v[some], order) for basis, v in zip(bases, flat, strict=True)]
+            if k == 1:
+                for values, E in zip(out, rows[0][1], strict=True):
+                    apply_rows(rows[0][0], E, P[None], values[None, some], extent(P.shape[1]))
+            else:
+                _contract(P, counts, rows, out[..., some, :])
+
+    in_parts(part, count, count * sum(space.order for space in spaces))
+    return out.reshape(*out.shape[:k], *shape, *coefficients.shape[k:])
+
+
+def _contract(P: Array, counts: tuple[int, ...], rows: list[tuple[Array, Array]], out: Array) -> None:
+    """Fill out[orders, point] from the basis functions along each axis at each point."""
+    strides = [math.prod(counts[axis + 1 :]) for axis in range(len(counts))]
+    offset = np.zeros(1, np.intp)
+    base = np.zeros(len(rows[0][0]), np.intp)
+    for (first, E), stride in zip(rows, strides, strict=True):
+        offset = (offset[:, None] + stride * np.arange(E.shape[2])).reshape(-1)
+        base += stride * first
+    for orders in np.ndindex(*out.shape[: len(rows)]):
+        w = rows[0][1][orders[0]]
+        for (_, E), r in zip(rows[1:], orders[1:], strict=True):
+            w = (w[:, :, None] * E[r][:, None, :]).reshape(len(w), -1)
+        contract(base, offset, w, P, out[orders], extent(P.shape[1]))
+
+
+def on_grid(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Array], order: int) -> Array:
+    """Return all derivatives up to an order at all combinations of flat parameter arrays: a banded matrix an axis."""
+    if any(v.ndim != 1 for v in x):
+        raise ParameterError(f"grid=True takes flat arrays; parameters of shapes {[v.shape for v in x]} given")
+    k = len(spaces)
+    out = empty((*(order + 1,) * k, *(len(v) for v in x), *coefficients.shape[k:]), coefficients.dtype)
+    rows = [Basis(space, len(v)).rows(v, order) for space, v in zip(spaces, x, strict=True)]
+    for orders in np.ndindex(*out.shape[:k]):
+        values = coefficients
+        for axis, ((first, E), r) in enumerate(zip(rows, orders, strict=True)):
+            values = Banded(first, E[r], spaces[axis].dimension).apply(values, axis)
+        out[orders] = values
+    return out
+
+
+def _padded(spaces: tuple[SplineSpace, ...], P: Array) -> Array:
+    """Return coefficients with the first `degree` of each periodic axis repeated after the last."""
+    for axis, space in enumerate(spaces):
+        if space.periodic:
+            P = np.take(P, space.wrapped(0, space.dimension + space.degree), axis=axis)
+    return P
+
+
+def quotient_rule(A: Array, k: int) -> Array:
+    """Return the derivatives of points from those of homogeneous coordinates, indexed by k orders.
+
+    From A = w·S: S^(α) = (A^(α) − Σ_{0 ≠ β ≤ α} C(α, β) w^(β) S^(α−β)) / w (Leibniz).
+    """
+    A, w = A[..., :-1], A[..., -1:]
+    S = empty(A.shape, A.dtype)
+    for alpha in itertools.product(*map(range, A.shape[:k])):
+        rest = A[alpha].copy()
+        for beta in itertools.product(*(range(a + 1) for a in alpha)):
+            if any(beta):
+                factor = math.prod(math.comb(a, b) for a, b in zip(alpha, beta, strict=True))
+                rest -= factor * w[beta] * S[tuple(a - b for a, b in zip(alpha, beta, strict=True))]
+        S[alpha] = rest / w[(0,) * k]
+    return S

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import itertools
-import math
 from collections.abc import Sequence
 from typing import Any, Self
 
 import numpy as np
 
-from knotwork.banded import Banded, apply_rows
 from knotwork.calculus import antiderivative, derivative
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.evaluation import CHUNK, Basis, contract, parameters
-from knotwork.kernel import extent
-from knotwork.numbers import Array, empty, exact, in_arithmetic_of, numbers, require_finite
-from knotwork.parallel import in_parts
+from knotwork.evaluation import on_grid, parameters, quotient_rule, scattered
+from knotwork.numbers import Array, exact, in_arithmetic_of, numbers, require_finite
 from knotwork.space import Frozen, SplineSpace, require_degree
 
 _set = object.__setattr__
@@ -216,9 +211,7 @@ class Spline(Frozen):
             The right end of the domain belongs to it; at a jump inside, the value is that from the right.
         """
         self._require_count(u)
-        orders = (0,) * len(u)
-        x = [parameters(space, values, extrapolate) for space, values in zip(self.spaces, u, strict=True)]
-        values = (self._on_grid if grid else self._scattered)(x, orders)[(0,) * len(u)]
+        values = self._values(u, 0, grid, extrapolate)[(0,) * len(u)]
         return _plain(values) if self.rational else values
 
     def derivatives(self, *u_and_order: Any, grid: bool = False, extrapolate: bool = False) -> Array:
@@ -243,76 +236,22 @@ class Spline(Frozen):
         self._require_count(u)
         if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
             raise ParameterError(f"order of derivative {order!r} given; expected an integer of at least 0")
-        x = [parameters(space, values, extrapolate) for space, values in zip(self.spaces, u, strict=True)]
-        found = (self._on_grid if grid else self._scattered)(x, (int(order),) * len(u))
+        found = self._values(u, int(order), grid, extrapolate)
         return quotient_rule(found, len(u)) if self.rational else found
+
+    def _values(self, u: Sequence[Any], order: int, grid: bool, extrapolate: bool) -> Array:
+        """Return the coefficients' derivatives up to an order in each parameter."""
+        x = [parameters(space, values, extrapolate) for space, values in zip(self.spaces, u, strict=True)]
+        return (on_grid if grid else scattered)(self.spaces, self.coefficients, x, order)
 
     def _require_count(self, u: Sequence[Any]) -> None:
         if len(u) != len(self.spaces):
             raise ParameterError(f"{len(u)} parameters given; this spline has {len(self.spaces)}")
 
-    def _scattered(self, x: list[Array], orders: tuple[int, ...]) -> Array:
-        """Return derivatives at points with broadcast parameters, a chunk at a time."""
-        k = len(x)
-        try:
-            wide = np.broadcast_arrays(*x) if k > 1 else x
-        except ValueError:
-            raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
-        shape, count, B = wide[0].shape, wide[0].size, self._width
-        out = empty((*(r + 1 for r in orders), count, B), self.coefficients.dtype)
-        flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
-        bases = [Basis(space, count) for space in self.spaces]
-        P = self._padded().reshape(-1, B)
-
-        def part(start: int, stop: int) -> None:
-            for lo in range(start, stop, CHUNK):
-                some = slice(lo, min(lo + CHUNK, stop))
-                rows = [basis.rows(v[some], r) for basis, v, r in zip(bases, flat, orders, strict=True)]
-                if k == 1:
-                    for values, E in zip(out, rows[0][1], strict=True):
-                        apply_rows(rows[0][0], E, P[None], values[None, some], extent(B))
-                else:
-                    self._contract(P, rows, orders, out[..., some, :])
-
-        in_parts(part, count, count * sum(space.order for space in self.spaces))
-        return out.reshape(*out.shape[:k], *shape, *self.coefficients.shape[k:])
-
-    def _contract(self, P: Array, rows: list[tuple[Array, Array]], orders: tuple[int, ...], out: Array) -> None:
-        """Fill out[orders, point] from the basis functions along each axis at each point."""
-        counts = [space.dimension + space.degree * space.periodic for space in self.spaces]
-        strides = [math.prod(counts[axis + 1 :]) for axis in range(len(counts))]
-        offset = _outer_sum([np.arange(space.order) * s for space, s in zip(self.spaces, strides, strict=True)])
-        base = sum(first * s for (first, _), s in zip(rows, strides, strict=True))
-        for index in itertools.product(*(range(r + 1) for r in orders)):
-            w = _outer_product([E[r] for (_, E), r in zip(rows, index, strict=True)])
-            contract(base, offset, w, P, out[index], extent(P.shape[1]))
-
-    def _on_grid(self, x: list[Array], orders: tuple[int, ...]) -> Array:
-        """Return derivatives at all combinations of flat parameter arrays: one banded matrix an axis."""
-        if any(v.ndim != 1 for v in x):
-            raise ParameterError(f"grid=True takes flat arrays; parameters of shapes {[v.shape for v in x]} given")
-        shape = (*(r + 1 for r in orders), *(len(v) for v in x), *self.coefficients.shape[len(x) :])
-        out = empty(shape, self.coefficients.dtype)
-        rows = [Basis(s, len(v)).rows(v, r) for s, v, r in zip(self.spaces, x, orders, strict=True)]
-        for index in itertools.product(*(range(r + 1) for r in orders)):
-            values = self.coefficients
-            for axis, ((first, E), r) in enumerate(zip(rows, index, strict=True)):
-                values = Banded(first, E[r], self.spaces[axis].dimension).apply(values, axis)
-            out[index] = values
-        return out
-
     @property
     def _width(self) -> int:
         """Numbers in one coefficient."""
         return 1 if self.scalar else self.coefficients.shape[-1]
-
-    def _padded(self) -> Array:
-        """The coefficients with the first `degree` of each periodic axis repeated after the last."""
-        P = self.coefficients
-        for axis, space in enumerate(self.spaces):
-            if space.periodic:
-                P = np.take(P, space.wrapped(0, space.dimension + space.degree), axis=axis)
-        return P
 
     # ---- new splines from old -----------------------------------------------------------------------------------
 
@@ -493,41 +432,9 @@ def surface(
     return _assemble(spaces, P, weights)
 
 
-def quotient_rule(A: Array, k: int) -> Array:
-    """Return the derivatives of points from those of homogeneous coordinates, indexed by k orders.
-
-    From A = w·S: S^(α) = (A^(α) − Σ_{0 ≠ β ≤ α} C(α, β) w^(β) S^(α−β)) / w (Leibniz).
-    """
-    A, w = A[..., :-1], A[..., -1:]
-    S = empty(A.shape, A.dtype)
-    for alpha in itertools.product(*map(range, A.shape[:k])):
-        rest = A[alpha].copy()
-        for beta in itertools.product(*(range(a + 1) for a in alpha)):
-            if any(beta):
-                factor = math.prod(math.comb(a, b) for a, b in zip(alpha, beta, strict=True))
-                rest -= factor * w[beta] * S[tuple(a - b for a, b in zip(alpha, beta, strict=True))]
-        S[alpha] = rest / w[(0,) * k]
-    return S
-
-
 def _plain(homogeneous: Array) -> Array:
     """Divide by the weight."""
     return homogeneous[..., :-1] / homogeneous[..., -1:]
-
-
-def _outer_sum(arrays: list[Array]) -> Array:
-    total = arrays[0]
-    for a in arrays[1:]:
-        total = (total[:, None] + a).reshape(-1)
-    return total
-
-
-def _outer_product(arrays: list[Array]) -> Array:
-    """Return the tensor product of the basis values, shape (points, all combinations)."""
-    product = arrays[0]
-    for a in arrays[1:]:
-        product = (product[:, :, None] * a[:, None, :]).reshape(len(a), -1)
-    return product
 
 
 def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> SplineSpace:
