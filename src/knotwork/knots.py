@@ -10,17 +10,17 @@ import numpy as np
 
 from knotwork.errors import KnotError
 from knotwork.kernel import kernel
-from knotwork.numbers import Array, empty, in_arithmetic_of, real_numbers
+from knotwork.numbers import Array, empty, in_arithmetic_of, real_array, require_finite
 
 
 def sorted_knots(knots: Any, what: str = "knots") -> Array:
     """Return a copy of `knots` (float64 or exact) after checking that they are finite and nondecreasing."""
-    t = real_numbers(knots, what, KnotError, copy=True)
+    t = real_array(knots, what, KnotError, copy=True)
     if t.ndim != 1:
         raise KnotError(f"{what}: an array of shape {t.shape} given; expected a flat list")
-    descents = t[1:] < t[:-1]
-    if descents.any():
-        i = int(np.argmax(descents))
+    if not in_order(t):
+        require_finite(t, what, KnotError)
+        i = int(np.argmax(t[1:] < t[:-1]))
         raise KnotError(f"{what}[{i}] = {t[i]} is above {what}[{i + 1}] = {t[i + 1]}; expected nondecreasing knots")
     if t.dtype != object and len(t) and not math.isfinite(t.item(-1) - t.item(0)):
         raise KnotError(f"{what} reach from {t[0]} to {t[-1]}: the difference overflows float64")
@@ -29,10 +29,18 @@ def sorted_knots(knots: Any, what: str = "knots") -> Array:
 
 def some_knots(knots: Any, what: str, like: Array) -> Array:
     """Return a number or a flat list of knots, in any order, sorted and in the arithmetic of `like`."""
-    x = np.atleast_1d(in_arithmetic_of(like, real_numbers(knots, what, KnotError), what, KnotError))
+    x = np.atleast_1d(in_arithmetic_of(like, real_array(knots, what, KnotError), what, KnotError))
     if x.ndim != 1:
         raise KnotError(f"{what}: an array of shape {x.shape} given; expected a number or a flat list")
-    return np.sort(x) if (x[1:] < x[:-1]).any() else x
+    if in_order(x):
+        return x
+    require_finite(x, what, KnotError)
+    return np.sort(x)
+
+
+def in_order(t: Array) -> bool:
+    """Tell whether knots are finite and nondecreasing: NaN fails every comparison, infinity could only be at an end."""
+    return not len(t) or bool(-math.inf < t.item(0) and t.item(-1) < math.inf and (t[:-1] <= t[1:]).all())
 
 
 def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:

@@ -52,13 +52,17 @@ def numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = Fal
 
 def real_numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
     """Return finite real `values` as a float64 or exact array."""
+    x = real_array(values, what, error, copy)
+    require_finite(x, what, error)
+    return x
+
+
+def real_array(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
+    """Return real `values`, perhaps not finite, as a float64 or exact array."""
     x = numbers(values, what, error, copy)
     if x.dtype.kind == "c" or (x.dtype == object and any(isinstance(v, complex) for v in x.reshape(-1).tolist())):
         raise error(f"{what}: complex numbers given; expected real ones")
-    if x.dtype == np.float32:
-        x = x.astype(np.float64)
-    require_finite(x, what, error)
-    return x
+    return x.astype(np.float64) if x.dtype == np.float32 else x
 
 
 def in_arithmetic_of(like: Array, x: Array, what: str, error: type[KnotworkError]) -> Array:
