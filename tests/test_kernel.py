@@ -78,9 +78,9 @@ def points(rng, dtype, *shape):
 
 
 def curves(dtype):
-    """Yield curves of many kinds. Each number of coordinates is compiled anew, so there are few."""
+    """Yield curves of many kinds. Each degree and number of coordinates is compiled anew, so there are few."""
     rng = np.random.default_rng(0)
-    for degree in (0, 1, 2, 3, 5):
+    for degree in (0, 3, 5) if dtype is np.float64 else (3,):  # 5: too many basis functions to unroll
         inner = np.sort(rng.random(9))
         if degree:
             inner[3:5] = inner[3]
@@ -94,7 +94,7 @@ def curves(dtype):
         else:
             yield kw.curve(points(rng, dtype, degree + 7, 1), degree, unclamped, weights=1 + rng.random(degree + 7))
     if dtype is np.float64:
-        yield kw.curve(points(rng, dtype, 9, 6), 4)  # more coordinates than are unrolled
+        yield kw.curve(points(rng, dtype, 9, 6), 5)  # more coordinates than are unrolled
 
 
 def work_on(spline, axis=0):
@@ -128,20 +128,28 @@ def test_plain_and_compiled_agree_on_curves(both, dtype):
 def test_plain_and_compiled_agree_on_surfaces(both):
     rng = np.random.default_rng(3)
     for shape, closed in (((6, 7, 2), (False, False)), ((6, 5, 2), (True, False))):
-        surface = kw.surface(rng.standard_normal(shape), degree=(2, 3), periodic=closed)
+        surface = kw.surface(rng.standard_normal(shape), degree=(5, 3), periodic=closed)
         for axis in (0, 1):
             work_on(surface, axis)
 
 
-def test_plain_and_compiled_agree_on_removal(both):
+ONE_BIT = pytest.mark.xfail(reason="a complex number divided by a real one differs in the last bit when compiled")
+
+
+@pytest.mark.parametrize("dtype", [np.float64, pytest.param(np.complex128, marks=ONE_BIT)])
+def test_plain_and_compiled_agree_on_removal(both, dtype):
+    """Points of float32 are fitted in float64."""
     rng = np.random.default_rng(4)
-    for curve in curves(np.float64):
-        if curve.degree[0] and not curve.space.periodic and not curve.rational:
-            new = np.linspace(*map(float, curve.space.domain), 7)[1:-1]
-            refined = kw.insert(curve, new)
-            kw.remove(refined, new, tolerance=1e-9)
-    line = kw.curve(rng.standard_normal((40, 2)).cumsum(axis=0), degree=1)
-    kw.reduce(line, 0.5)
+    for curve in curves(dtype):
+        new = np.linspace(*map(float, curve.space.domain), 7)[1:-1]
+        twice = np.repeat(new, min(2, curve.space.order))
+        assert len(kw.remove(kw.insert(curve, twice), twice, tolerance=1e-9).removed) == len(twice)
+        kw.remove(curve, curve.space.breaks[1:-1], tolerance=0.3)
+    for degree in (1, 3):
+        line = kw.curve(points(rng, dtype, 40, 2).cumsum(axis=0), degree)
+        assert len(kw.reduce(line, 0.5).removed)
+    net = kw.surface(points(rng, dtype, 9, 4, 2))
+    kw.remove(net, net.spaces[0].breaks[1:-1], tolerance=1.0)
 
 
 def test_every_kernel_is_tried(both):
@@ -151,7 +159,7 @@ def test_every_kernel_is_tried(both):
             importlib.import_module(module.name)
     test_plain_and_compiled_agree_on_curves(both, np.float64)
     test_plain_and_compiled_agree_on_surfaces(both)
-    test_plain_and_compiled_agree_on_removal(both)
+    test_plain_and_compiled_agree_on_removal(both, np.float64)
     reached = set(both)
     while below := {callee for caller in reached for _, callee in caller._callees()} - reached:
         reached |= below
