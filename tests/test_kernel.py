@@ -133,10 +133,7 @@ def test_plain_and_compiled_agree_on_surfaces(both):
             work_on(surface, axis)
 
 
-ONE_BIT = pytest.mark.xfail(reason="a complex number divided by a real one differs in the last bit when compiled")
-
-
-@pytest.mark.parametrize("dtype", [np.float64, pytest.param(np.complex128, marks=ONE_BIT)])
+@pytest.mark.parametrize("dtype", [np.float64, np.complex128])
 def test_plain_and_compiled_agree_on_removal(both, dtype):
     """Points of float32 are fitted in float64."""
     rng = np.random.default_rng(4)

@@ -326,6 +326,9 @@ class SplineSpace(Frozen):
         x = some_knots(knots, "knots to remove", self.knots)
         if self.periodic:
             x = np.sort(np.where(x == self.knots[-1], self.knots[0], x))
+        a, b = self.domain
+        if len(x) and (x[0] < a or x[-1] > b):
+            raise KnotError(f"knot {x[0] if x[0] < a else x[-1]} is outside the domain [{a}, {b}]")
         values, counts = distinct(x)
         found = multiplicities(self.knots, values)
         lacking = counts > found
@@ -335,7 +338,6 @@ class SplineSpace(Frozen):
         kept = combine(self.knots, x, np.subtract)
         n = 0 if self.periodic else self.degree
         if len(kept) < 2 * n + 2 or (kept[n], kept[-n - 1]) != self.domain:
-            a, b = self.domain
             raise KnotError(f"without these knots the domain would no longer be [{a}, {b}]; expected knots inside it")
         return SplineSpace(self.degree, kept, periodic=self.periodic)
 

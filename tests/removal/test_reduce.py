@@ -170,10 +170,7 @@ def test_scale_of_the_parameter():
         assert (scaled.spline.coefficients == plain.spline.coefficients).all()
 
 
-OVERFLOW = pytest.mark.xfail(raises=RuntimeWarning, reason="1 / tolerance overflows")
-
-
-@pytest.mark.parametrize("size", [pytest.param(1e-310, marks=OVERFLOW), 1e-150, 1e150, 1e307])
+@pytest.mark.parametrize("size", [1e-310, 1e-150, 1e150, 1e307])
 def test_tiny_and_huge_points(size):
     curve = Spline(noisy().space, noisy().coefficients * size)
     result = kw.reduce(curve, 0.02 * size)
@@ -181,13 +178,11 @@ def test_tiny_and_huge_points(size):
     assert result.spline.space.dimension < 40
 
 
-@OVERFLOW
 def test_points_at_the_origin_within_the_smallest_tolerance():
     result = kw.reduce(kw.curve(np.zeros((20, 2))), 5e-324)
     assert result.spline.space.dimension == 4
 
 
-@pytest.mark.xfail(raises=OverflowError, reason="exact costs become floats")
 @pytest.mark.parametrize(("size", "tolerance"), [(1, Fraction(1, 10**400)), (10**400, 1)])
 def test_exact_numbers_beyond_floats(size, tolerance):
     curve = kw.curve(kinds.control_points((6, 2), 0) * size, 2)
@@ -230,14 +225,12 @@ def test_end_points_stay_exactly(degree):
     assert result.space.dimension == degree + 1
 
 
-@pytest.mark.xfail(reason="the last row is pinned over the first where one point is left")
 def test_a_step_function_keeps_both_ends():
     steps = kw.curve([0.0, 4.0, 10.0], 0)
     result = kw.reduce(steps, 100.0).spline
     assert result([0.0, 1.0]).tolist() == [0.0, 10.0]
 
 
-@pytest.mark.xfail(reason="the first control point is pinned, not the one at the start of the domain")
 def test_ends_clamped_with_knots_beyond_stay():
     space = SplineSpace(3, [-1, 0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1, 3])
     curve = Spline(space, np.random.default_rng(0).standard_normal(space.dimension))

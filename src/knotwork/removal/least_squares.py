@@ -51,16 +51,16 @@ def back_substitute(R, z):  # type: ignore[no-untyped-def]
                 z[k, c] = z[k, c] - R[k, q] * z[k + q, c]
 
 
-def least_squares(A: Banded, weight: Array, d: Array, pinned: tuple[int, ...] = ()) -> Array:
-    """Return the c that minimises Σ weight_i |(A c − d)_i|²; `pinned` columns take the first and last row of d instead.
+def least_squares(A: Banded, weight: Array, d: Array, pinned: dict[int, int] | None = None) -> Array:
+    """Return the c that minimises Σ weight_i |(A c − d)_i|², where some c are given.
 
     Parameters
     ----------
     A : Banded, shape (N, n)
     weight : ndarray, shape (N,)
     d : ndarray, shape (N, dim)
-    pinned : tuple of int
-        0 or n - 1, or both: there c is d[0], d[N - 1].
+    pinned : dict of int to int
+        Columns in which c is the row of d named.
 
     Returns
     -------
@@ -73,8 +73,8 @@ def least_squares(A: Banded, weight: Array, d: Array, pinned: tuple[int, ...] = 
     if pinned:
         X, y = X.copy(), d.copy()
         index = first[:, None] + np.arange(X.shape[1])
-        for column in pinned:
-            fixed = d[0] if column == 0 else d[-1]
+        for column, row in pinned.items():
+            fixed = d[row]
             rows, place = np.nonzero(index == column)
             y[rows] -= X[rows, place][:, None] * fixed
             X[rows, place] = 0 * X[rows, place]

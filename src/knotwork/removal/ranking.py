@@ -12,6 +12,9 @@ import numpy as np
 from knotwork.kernel import kernel
 from knotwork.numbers import Array
 
+#: exact costs above this are as good as this; floats end not far beyond
+_MOST = 10**300
+
 
 @kernel
 def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):  # type: ignore[no-untyped-def]
@@ -64,16 +67,16 @@ def level(s, c, n, m, z, a, b, e):  # type: ignore[no-untyped-def]
     for i in range(1, L + 2):
         y = -y * b[i - 1] / a[i]
         if abs(y) > 1:  # keep the largest |y| at 1, or y could overflow
-            shrink = abs(y)
-            y = y / shrink
-            norm = norm / shrink
+            shrink = 1 / abs(y)
+            y = y * shrink
+            norm = norm * shrink
             for x in range(len(e)):
-                e[x] = e[x] / shrink
+                e[x] = e[x] * shrink
         norm = norm + abs(y)
         for x in range(len(e)):
             e[x] = e[x] + y * c[lo + i, x]
-    for x in range(len(e)):
-        e[x] = e[x] / norm
+    for x in range(len(e)):  # complex numbers are divided differently by NumPy and Numba, but multiplied alike
+        e[x] = e[x] * (1 / norm)
 
 
 @kernel
@@ -91,9 +94,9 @@ def take_out(s, c, n, m, a, b, e):  # type: ignore[no-untyped-def]
         for i in range(L + 2):
             c[lo + i, x] = c[lo + i, x] - (e[x] if i % 2 == 0 else -e[x])
         for i in range(1, split + 1):
-            c[lo + i, x] = (c[lo + i, x] - a[i] * c[lo + i - 1, x]) / b[i]
+            c[lo + i, x] = (c[lo + i, x] - a[i] * c[lo + i - 1, x]) * (1 / b[i])
         for i in range(L, split + 1, -1):  # unknown i - 1 stands in row i
-            c[lo + i, x] = (c[lo + i, x] - b[i] * c[lo + i + 1, x]) / a[i]
+            c[lo + i, x] = (c[lo + i, x] - b[i] * c[lo + i + 1, x]) * (1 / a[i])
         for i in range(lo + split + 1, n + m):
             c[i, x] = c[i + 1, x]
     for i in range(n + m, len(s) - 1):
@@ -106,4 +109,6 @@ def ranked(t: Array, d: Array, n: int, last: Array, copies: Array, scale: Array)
     weight = np.empty(int(copies.sum()), np.result_type(t.dtype, scale.dtype))
     s, c, e = np.empty(3 * n + 3, t.dtype), np.empty((2 * n + 3, d.shape[1]), dtype), np.empty(d.shape[1], dtype)
     rank(t, d, n, last, copies, scale, weight, s, c, np.empty(n + 3, t.dtype), np.empty(n + 3, t.dtype), e)
+    if weight.dtype == object:
+        weight = np.array([min(w, _MOST) for w in weight.tolist()])
     return weight.astype(np.float64)

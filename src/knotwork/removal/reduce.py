@@ -18,7 +18,7 @@ from knotwork.banded import along, as_blocks
 from knotwork.errors import ParameterError
 from knotwork.insertion.insert import matrix_to, refine_to
 from knotwork.knots import distinct, multiplicities
-from knotwork.numbers import Array, numbers, require_finite
+from knotwork.numbers import Array, in_arithmetic_of, real_numbers
 from knotwork.removal.least_squares import least_squares
 from knotwork.removal.ranking import ranked
 from knotwork.space import SplineSpace
@@ -160,12 +160,12 @@ class Original:
 
     def __init__(self, spline: Spline, axis: int, tolerance: Any) -> None:
         self.spline, self.axis, self.space = spline, axis, spline.spaces[axis]
-        given = numbers(tolerance, "tolerance", ParameterError)
-        if given.shape not in ((), (spline.dim,)) or given.dtype.kind == "c":
+        given = real_numbers(tolerance, "tolerance", ParameterError)
+        if given.shape not in ((), (spline.dim,)):
             raise ParameterError(
                 f"tolerance of shape {given.shape} given; expected a number or one a component, {spline.dim}"
             )
-        require_finite(given, "tolerance", ParameterError)
+        given = in_arithmetic_of(spline.coefficients, given, "tolerance", ParameterError)
         if (given < 0).any():
             raise ParameterError(f"tolerance {tolerance} given; expected at least 0")
         self.one_number = given.ndim == 0
@@ -191,12 +191,17 @@ class Original:
         if not self.exact:
             self.d = self.d.astype(np.result_type(self.d.dtype, np.float64))
             self.weight = self.weight / self.weight.max()
-        positive = [x for x in self.allowed if x > 0]
-        scale = np.array([1 / x if x > 0 else 1 / min(positive, default=1) for x in self.allowed])
+        scale = np.array([self._per_tolerance(*pair) for pair in zip(self.allowed, size, strict=True)])
         if spline.rational:
             smallest = flat[:, -1].min()
             scale = np.append(scale, (scale * self.reach).max()) / smallest
         self.scale = np.tile(scale.astype(object if self.exact else np.float64), self.d.shape[1] // len(scale))
+
+    def _per_tolerance(self, allowed: Any, size: Any) -> Any:
+        """Return what makes an error a fraction of the tolerance; where that is 0, of next to nothing."""
+        if allowed > 0:
+            return 1 / (allowed if self.exact else max(allowed, 8 * np.finfo(np.float64).tiny))
+        return 2**64 / size if size > 0 else 1
 
     def reported(self, bound: Array) -> Any:
         """Return the bound as the tolerance was given: a number, or one a component."""
@@ -215,7 +220,7 @@ class Original:
             bound = np.abs(change).max(axis=0)
             return bound
         w = back[..., -1].min()
-        if w <= 0:
+        if min(w, other.coefficients[..., -1].min()) <= 0:
             return np.full(self.spline.dim, np.inf)
         dw = change[:, -1:]
         bound = (np.abs(change[:, :-1] - self.centre * dw) + self.reach * np.abs(dw)).max(axis=0) / w
@@ -226,32 +231,48 @@ class Original:
         space = SplineSpace.trusted(self.space.degree, self.space.knots[mask], self.space.periodic)
         gone = self.space.knots[~mask]
         A = matrix_to(space, self.space, gone)
-        c = least_squares(A, self.weight, self.d, self._pinned(space))
+        pinned = self._pinned(space)
+        c = least_squares(A, self.weight, self.d, dict(pinned))
+        kept = all((c[column] == self.d[row]).all() for column, row in pinned)  # a constant cannot keep two ends
         other, n, inner = self.shape[0], space.dimension, self.shape[2]
         blocks = np.ascontiguousarray(c.reshape(n, other, inner).transpose(1, 0, 2))
         coefficients = along(blocks, self.spline.coefficients, self.axis).astype(self.spline.coefficients.dtype)
         spline = self.spline.with_axis(self.axis, space, coefficients)
-        return Trial(spline, self.difference(spline, gone))
+        return Trial(spline, self.difference(spline, gone) if kept else np.full(len(self.allowed), np.inf))
 
-    def _pinned(self, space: SplineSpace) -> tuple[int, ...]:
-        """Return the first and last column where the ends are clamped."""
+    def _pinned(self, space: SplineSpace) -> list[tuple[int, int]]:
+        """Return the control points at clamped ends: where they are in `space`, and where here."""
         if space.periodic:
-            return ()
-        a, b = space.domain
-        ends = ((a, 0), (b, space.dimension - 1))
-        return tuple(column for x, column in ends if space.multiplicity(x) > space.degree)
+            return []
+        pairs = zip(_end_points(space), _end_points(self.space), strict=True)
+        return [(column, row) for column, row in pairs if column is not None and row is not None]
 
     def costs(self, trial: Trial, values: Array, copies: Array) -> Array:
         """Return the cost of each copy of the knots `values` in a fit."""
         space = trial.spline.spaces[self.axis]
         t, zero = space.unrolled
-        c = as_blocks(trial.spline.coefficients, self.axis).transpose(1, 0, 2)
-        d = np.ascontiguousarray(c).reshape(len(c[:, 0, 0]), -1)
+        c = trial.spline.coefficients
+        if self.spline.rational:  # about the centre, as the bound is taken
+            c = np.concatenate([c[..., :-1] - self.centre * c[..., -1:], c[..., -1:]], axis=-1)
+        d = np.ascontiguousarray(as_blocks(c, self.axis).transpose(1, 0, 2)).reshape(space.dimension, -1)
         if space.periodic:
             d = d[space.wrapped(-zero, len(t) - space.degree - 1)]
         last = zero + np.searchsorted(space.knots, values, "right") - 1
         d = d if self.exact else d.astype(np.result_type(d.dtype, np.float64))
-        return ranked(t, d, space.degree, last, copies, self.scale)
+        # knots at the ends of a domain that is not clamped lack neighbours to be ranked by: they are tried first
+        a, b = space.domain
+        inner = (values > a) & (values < b) | space.periodic
+        costs = np.zeros(copies.sum())
+        costs[np.repeat(inner, copies)] = ranked(t, d, space.degree, last[inner], copies[inner], self.scale)
+        return costs
+
+
+def _end_points(space: SplineSpace) -> tuple[int | None, int | None]:
+    """Return which control points are the end points; None where an end is not clamped."""
+    n, (a, b) = space.degree, space.domain
+    start = int(np.searchsorted(space.knots, a, "right")) - 1 - n
+    end = int(np.searchsorted(space.knots, b, "left")) - 1
+    return start if space.multiplicity(a) > n else None, end if space.multiplicity(b) > n else None
 
 
 Found = tuple[Trial, Array]
