@@ -11,6 +11,7 @@ import numpy as np
 from knotwork.errors import KnotError
 from knotwork.kernel import kernel
 from knotwork.numbers import Array, empty, in_arithmetic_of, real_array, require_finite
+from knotwork.parallel import in_parts
 
 
 def sorted_knots(knots: Any, what: str = "knots") -> Array:
@@ -74,9 +75,23 @@ def old_is_next(U, j, W, k, stop):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def merge(U, W, T):  # type: ignore[no-untyped-def]
-    """T = all of the sorted U and W, sorted."""
-    j = k = 0
+def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
+    """Return how many of the first `count` merged knots are old; in the order of `old_is_next`."""
+    lo, hi = max(0, count - len(W)), min(count, len(U))
+    while lo < hi:
+        j = (lo + hi) // 2
+        if j < stop and U[j] <= W[count - j - 1]:
+            lo = j + 1
+        else:
+            hi = j
+    return lo
+
+
+@kernel
+def merge(U, W, T, lo):  # type: ignore[no-untyped-def]
+    """T = the sorted U and W merged, from place `lo` on."""
+    j = old_among(U, W, len(U), lo)
+    k = lo - j
     for i in range(len(T)):
         if old_is_next(U, j, W, k, len(U)):
             T[i] = U[j]
@@ -89,7 +104,7 @@ def merge(U, W, T):  # type: ignore[no-untyped-def]
 def merged(a: Array, b: Array) -> Array:
     """Return all knots of two sorted arrays, sorted: multiplicities add."""
     T = empty((len(a) + len(b),), np.result_type(a.dtype, b.dtype))
-    merge(a, b, T)
+    in_parts(lambda lo, hi: merge(a, b, T[lo:hi], lo), len(T), len(T))
     return T
 
 

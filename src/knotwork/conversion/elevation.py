@@ -12,9 +12,9 @@ import numpy as np
 
 from knotwork.banded import Banded
 from knotwork.errors import ParameterError
-from knotwork.insertion.merge import discrete_bsplines, old_among
+from knotwork.insertion.merge import discrete_bsplines
 from knotwork.kernel import kernel
-from knotwork.knots import distinct, merged, old_is_next
+from knotwork.knots import distinct, merged, old_among, old_is_next
 from knotwork.numbers import empty, require_room
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline

@@ -12,25 +12,12 @@ import numpy as np
 
 from knotwork.banded import combination
 from knotwork.kernel import extent, kernel
-from knotwork.knots import old_is_next
+from knotwork.knots import old_among, old_is_next
 from knotwork.numbers import Array, empty
 from knotwork.parallel import in_parts
 
 #: rows whose weights are computed before they are applied
 BLOCK = 64
-
-
-@kernel
-def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
-    """Return how many of the first `count` merged knots are old; in the order of `old_is_next`."""
-    lo, hi = max(0, count - len(W)), min(count, len(U))
-    while lo < hi:
-        j = (lo + hi) // 2
-        if j < stop and U[j] <= W[count - j - 1]:
-            lo = j + 1
-        else:
-            hi = j
-    return lo
 
 
 @kernel
@@ -83,8 +70,7 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
 @kernel
 def insertion_rows(U, W, stop, n, lo, start, new, E):  # type: ignore[no-untyped-def]
     """Rows lo, lo+1, … of the insertion matrix: first column `start`, number `new` of new knots, weights E."""
-    lu = old_among(U, W, stop, lo)
-    hu = old_among(U, W, stop, lo + n)
+    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
     lw, hw = lo - lu, lo + n - hu
     for i in range(len(start)):
         if old_is_next(U, lu, W, lw, stop):
@@ -95,21 +81,34 @@ def insertion_rows(U, W, stop, n, lo, start, new, E):  # type: ignore[no-untyped
             hu += 1
         else:
             hw += 1
-        v = hw - lw
-        start[i] = lu - 1 - v
-        new[i] = v
-        discrete_bsplines(U, lu, hu, W, lw, v, E, i)
+        start[i], new[i] = lu - 1 - (hw - lw), hw - lw
+        discrete_bsplines(U, lu, hu, W, lw, hw - lw, E, i)
 
 
 @kernel
 def refine(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-untyped-def]
     """out[a, i] = refined control point lo + i, a block of rows at a time (start, new, E: room for it)."""
+    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
+    lw, hw = lo - lu, lo + n - hu
     for top in range(0, out.shape[1], len(start)):
         count = min(len(start), out.shape[1] - top)
-        insertion_rows(U, W, stop, n, lo + top, start[:count], new, E)
-        for a in range(len(P)):
-            for i in range(count):
-                combination(out, a, top + i, P, start[i], E, i, new[i], D)
+        for i in range(count):
+            if old_is_next(U, lu, W, lw, stop):
+                lu += 1
+            else:
+                lw += 1
+            if old_is_next(U, hu, W, hw, stop):
+                hu += 1
+            else:
+                hw += 1
+            start[i], new[i] = lu - 1 - (hw - lw), hw - lw
+            discrete_bsplines(U, lu, hu, W, lw, hw - lw, E, i)
+            if len(P) == 1:  # at once: the two branches on the number of new knots are then predicted as one
+                combination(out, 0, top + i, P, start[i], E, i, new[i], D)
+        if len(P) > 1:
+            for a in range(len(P)):
+                for i in range(count):
+                    combination(out, a, top + i, P, start[i], E, i, new[i], D)
 
 
 def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> Array:
