@@ -64,28 +64,32 @@ def tasks():
         yield f"bicubic {n}² + {m} + {m}", goal, "surface", (t, 3, net, new_knots(m)), None
 
 
+def timed(run, arguments, calls):
+    """Return the mean time of so many calls in seconds."""
+    start = time.perf_counter()
+    for _ in range(calls):
+        run(*arguments)
+    return (time.perf_counter() - start) / calls
+
+
 def race(contenders, arguments, quick):
     """Return the median time of each contender in microseconds, their turns interleaved."""
     batches = {}
     for name, run in contenders.items():
         if run(*arguments) is None:
             continue
-        start = time.perf_counter()
-        run(*arguments)
-        once = time.perf_counter() - start
+        once = timed(run, arguments, 1)
         if once < 1:  # slower ones would only hold up the rest
-            batches[name] = max(1, int(0.004 / once))  # a few warm calls a turn
+            once = timed(run, arguments, 1 + int(0.01 / once))
+            batches[name] = 1 + int(0.005 / once)  # as many warm calls a turn
     times = {name: [] for name in batches}
     budget, start, rounds = (0.3 if quick else 2.0), time.perf_counter(), 0
     while rounds < 5 or (time.perf_counter() - start < budget and rounds < 500):
         for name, calls in batches.items():
             run = contenders[name]
             time.sleep(0.01)  # the threads of the one before come to rest
-            run(*arguments)
-            before = time.perf_counter()
-            for _ in range(calls):
-                run(*arguments)
-            times[name].append((time.perf_counter() - before) / calls)
+            timed(run, arguments, 1 + calls // 2)
+            times[name].append(timed(run, arguments, calls))
         rounds += 1
     return {name: 1e6 * statistics.median(found) for name, found in times.items()}
 
