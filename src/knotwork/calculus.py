@@ -80,5 +80,5 @@ def antiderivative(space: SplineSpace, coefficients: Array, axis: int) -> tuple[
     higher = SplineSpace.trusted(n + 1, np.concatenate([t[:1], t, t[-1:]]))
     integral = along(out, coefficients, axis)
     start = np.array([higher.domain[0]], higher.knots.dtype)
-    first, E = Basis(higher, 1).rows(start)
+    first, E = Basis(higher, start).rows(start)
     return higher, integral - Banded(first, E[0], higher.dimension).apply(integral, axis)

@@ -17,6 +17,8 @@ from knotwork.space import SplineSpace
 
 #: parameters evaluated at a time, so that their basis functions stay in the cache
 CHUNK = 2048
+#: steps from the interval of one sorted parameter to that of the next, before it is searched for
+WALK = 8
 
 
 @kernel
@@ -41,16 +43,21 @@ def cell_table(t, first, last, table):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def locate(t, table, first, last, u, span):  # type: ignore[no-untyped-def]
+def locate(t, table, walk, first, last, u, span):  # type: ignore[no-untyped-def]
     """span[i] = the last q in [first, last] with t[q] <= u[i]: [t_q, t_{q+1}) holds u, or the last holds b."""
     cells = len(table) - 1
+    lo = first
     for i in range(len(u)):
         x = u[i]
+        steps = 0  # sorted parameters stay or take few steps
+        while steps < walk and lo < last and t[lo + 1] <= x:
+            lo += 1
+            steps += 1
         if x < t[first]:
-            span[i] = first
+            lo = first
         elif x >= t[last + 1]:
-            span[i] = last
-        else:
+            lo = last
+        elif x < t[lo] or x >= t[lo + 1]:
             c = cell(x, t[first], t[last + 1], cells)
             lo, hi = table[c], table[c + 1]
             while lo < hi:
@@ -59,7 +66,7 @@ def locate(t, table, first, last, u, span):  # type: ignore[no-untyped-def]
                     lo = q
                 else:
                     hi = q - 1
-            span[i] = lo
+        span[i] = lo
 
 
 @kernel
@@ -114,14 +121,15 @@ def contract(base, offset, w, P, out, D):  # type: ignore[no-untyped-def]
 class Basis:
     """The basis functions of a space, ready to be evaluated at parameters."""
 
-    def __init__(self, space: SplineSpace, count: int) -> None:
-        """Prepare for `count` parameters: a table of cells pays for itself only if there are many."""
+    def __init__(self, space: SplineSpace, u: Array) -> None:
+        """Prepare for parameters u: a table of cells pays for itself only if they are many and not sorted."""
         n = space.degree
         self.space = space
         self.t, zero = space.unrolled
         self.first, self.last = space.cached("intervals", self._intervals)
         self.shift = n + zero
-        if count < (self.last - self.first) // 8:
+        self.walk = WALK if (u[:-1] <= u[1:]).all() else 0
+        if self.walk or len(u) < (self.last - self.first) // 8:
             self.table = np.array([self.first, self.last])
         else:
             self.table = space.cached("cells", self._cells)
@@ -139,7 +147,7 @@ class Basis:
     def rows(self, u: Array, order: int = 0) -> tuple[Array, Array]:
         """Return, for each u, the first basis function that lives there and E[r, i, j] as `basis` gives it."""
         span = np.empty(len(u), np.intp)
-        locate(self.t, self.table, self.first, self.last, u, span)
+        locate(self.t, self.table, self.walk, self.first, self.last, u, span)
         n = self.space.degree
         E = empty((order + 1, len(u), n + 1), self.t.dtype)
         basis(self.t, extent(n), extent(order + 1), span, u, E)
@@ -189,7 +197,7 @@ def scattered(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Arra
     P = P.reshape(math.prod(counts), -1)
     out = empty((*(order + 1,) * k, count, P.shape[1]), P.dtype)
     flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
-    bases = [Basis(space, count) for space in spaces]
+    bases = [Basis(space, v) for space, v in zip(spaces, flat, strict=True)]
 
     def part(start: int, stop: int) -> None:
         for lo in range(start, stop, CHUNK):
@@ -226,7 +234,7 @@ def on_grid(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Array]
         raise ParameterError(f"grid=True takes flat arrays; parameters of shapes {[v.shape for v in x]} given")
     k = len(spaces)
     out = empty((*(order + 1,) * k, *(len(v) for v in x), *coefficients.shape[k:]), coefficients.dtype)
-    rows = [Basis(space, len(v)).rows(v, order) for space, v in zip(spaces, x, strict=True)]
+    rows = [Basis(space, v).rows(v, order) for space, v in zip(spaces, x, strict=True)]
     for orders in np.ndindex(*out.shape[:k]):
         values = coefficients
         for axis, ((first, E), r) in enumerate(zip(rows, orders, strict=True)):
