@@ -6,8 +6,6 @@ knots W. Of the n arguments only the ν new ones need work; the old ones are con
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from knotwork.banded import combination
@@ -68,26 +66,12 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
 
 
 @kernel
-def insertion_rows(U, W, stop, n, lo, start, new, E):  # type: ignore[no-untyped-def]
-    """Rows lo, lo+1, … of the insertion matrix: first column `start`, number `new` of new knots, weights E."""
-    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
-    lw, hw = lo - lu, lo + n - hu
-    for i in range(len(start)):
-        if old_is_next(U, lu, W, lw, stop):
-            lu += 1
-        else:
-            lw += 1
-        if old_is_next(U, hu, W, hw, stop):
-            hu += 1
-        else:
-            hw += 1
-        start[i], new[i] = lu - 1 - (hw - lw), hw - lw
-        discrete_bsplines(U, lu, hu, W, lw, hw - lw, E, i)
-
-
-@kernel
 def refine(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-untyped-def]
-    """out[a, i] = refined control point lo + i, a block of rows at a time (start, new, E: room for it)."""
+    """out[a, i] = refined control point lo + i, a block of rows of the insertion matrix at a time.
+
+    Of each row of a block, `start` is the first column, `new` the number of new knots among its arguments, and E has
+    the weights.
+    """
     lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
     lw, hw = lo - lu, lo + n - hu
     for top in range(0, out.shape[1], len(start)):
@@ -129,9 +113,9 @@ def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int)
     return out
 
 
-def rows_of_matrix(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[Any, Any, Any]:
-    """Return first columns, numbers of new knots and weights (rows, n + 1) of the insertion matrix."""
+def rows_of_matrix(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[Array, Array, Array]:
+    """Return first columns, numbers of new knots and weights (rows, n + 1): the matrix is one block, without points."""
     start, new = np.empty(rows, np.intp), np.empty(rows, np.intp)
     E = empty((rows, n + 1), U.dtype)
-    insertion_rows(U, W, stop, n, lo, start, new, E)
+    refine(U, W, stop, n, lo, np.empty((0, 0, 1)), np.empty((0, rows, 1)), start, new, E, extent(1))
     return start, new, E
