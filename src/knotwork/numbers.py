@@ -50,9 +50,16 @@ def numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = Fal
     raise error(f"{what}: {array.dtype} given; expected numbers (float64, float32, complex128 or exact objects)")
 
 
-def real_numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
+def whole(value: Any, what: str, least: int, error: type[KnotworkError]) -> int:
+    """Return a whole number of at least `least` as an int, or raise."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise error(f"{what} {value!r} given; expected an integer of at least {least}")
+    return int(value)
+
+
+def real_numbers(values: Any, what: str, error: type[KnotworkError]) -> Array:
     """Return finite real `values` as a float64 or exact array."""
-    x = real_array(values, what, error, copy)
+    x = real_array(values, what, error)
     require_finite(x, what, error)
     return x
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from knotwork.errors import MissingExtraError, ParameterError, PointError
 from knotwork.knots import multiplicities
-from knotwork.numbers import Array
+from knotwork.numbers import Array, whole
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -85,8 +85,8 @@ def plot(
     over, under = [_in_floats(s) for s in _listed(spline)], [_in_floats(s) for s in _listed(before)]
     if not over:
         raise ParameterError("no spline given; expected at least one")
-    if samples is not None and (isinstance(samples, bool) or not isinstance(samples, int | np.integer) or samples < 1):
-        raise ParameterError(f"samples {samples!r} given; expected an integer of at least 1")
+    if samples is not None:
+        samples = whole(samples, "samples", 1, ParameterError)
     spatial = _spatial([*under, *over])
     ax = _axes(ax, spatial)
     _draw(

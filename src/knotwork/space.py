@@ -22,7 +22,7 @@ from knotwork.knots import (
     sorted_knots,
     turned,
 )
-from knotwork.numbers import Array, exact, require_room
+from knotwork.numbers import Array, exact, require_room, whole
 
 _set = object.__setattr__
 
@@ -206,6 +206,27 @@ class SplineSpace(Frozen):
             turn = turn.astype(object)
         return turned(t[index], turn, t[0], t[-1])
 
+    def images(self, x: Array) -> tuple[Array, int]:
+        """Return sorted knots of the half-open period repeated over `unrolled`, and how many of them lie before it."""
+        t, zero = self.unrolled
+        if not len(x):
+            return x, 0
+        before, after = 1 + zero // self.dimension, 1 + (len(t) - zero) // self.dimension
+        turns = [turned(x, np.array(turn), *self.knots[[0, -1]]) if turn else x for turn in range(-before, after + 1)]
+        repeated = np.concatenate(turns)
+        cut = int(np.searchsorted(repeated, t[0], "left"))
+        return repeated[cut : np.searchsorted(repeated, t[-1], "right")], before * len(x) - cut
+
+    @property
+    def removable(self) -> Array:
+        """A mask of the knots that may go: those inside the domain; of a period all but its ends."""
+        a, b = self.domain
+        inside: Array = (self.knots > a) & (self.knots < b)
+        if self.periodic:
+            inside = np.ones(len(self.knots), bool)
+            inside[[0, -1]] = False
+        return inside
+
     def wrapped(self, first: int, count: int) -> Array:
         """Return the indices of the control points `first` … `first + count - 1`, taken around the period."""
         return np.arange(first, first + count) % self.dimension
@@ -350,9 +371,7 @@ class SplineSpace(Frozen):
 
 def require_degree(degree: Any) -> int:
     """Return a degree as an int, or raise."""
-    if isinstance(degree, bool) or not isinstance(degree, int | np.integer) or degree < 0:
-        raise KnotError(f"degree {degree!r} given; expected an integer of at least 0")
-    return int(degree)
+    return whole(degree, "degree", 0, KnotError)
 
 
 def require_enough(knots: Array, degree: int, periodic: bool) -> None:

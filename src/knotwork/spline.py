@@ -10,7 +10,7 @@ import numpy as np
 from knotwork.calculus import antiderivative, derivative
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import on_grid, parameters, quotient_rule, scattered
-from knotwork.numbers import Array, exact, in_arithmetic_of, numbers, require_finite
+from knotwork.numbers import Array, exact, in_arithmetic_of, numbers, require_finite, whole
 from knotwork.space import Frozen, SplineSpace, require_degree
 
 _set = object.__setattr__
@@ -125,7 +125,12 @@ class Spline(Frozen):
     @property
     def dim(self) -> int:
         """The number of coordinates of a point; 1 for a scalar spline."""
-        return 1 if self.scalar else self.coefficients.shape[-1] - self.rational
+        return self.width - self.rational
+
+    @property
+    def width(self) -> int:
+        """How many numbers a coefficient is: the coordinates, and the weight if there is one."""
+        return 1 if self.scalar else self.coefficients.shape[-1]
 
     @property
     def points(self) -> Array:
@@ -234,9 +239,7 @@ class Spline(Frozen):
             raise ParameterError("no parameters given; expected them and then the order of derivative")
         *u, order = u_and_order
         self._require_count(u)
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
-            raise ParameterError(f"order of derivative {order!r} given; expected an integer of at least 0")
-        found = self._values(u, int(order), grid, extrapolate)
+        found = self._values(u, whole(order, "order of derivative", 0, ParameterError), grid, extrapolate)
         return quotient_rule(found, len(u)) if self.rational else found
 
     def _values(self, u: Sequence[Any], order: int, grid: bool, extrapolate: bool) -> Array:
@@ -247,11 +250,6 @@ class Spline(Frozen):
     def _require_count(self, u: Sequence[Any]) -> None:
         if len(u) != len(self.spaces):
             raise ParameterError(f"{len(u)} parameters given; this spline has {len(self.spaces)}")
-
-    @property
-    def _width(self) -> int:
-        """Numbers in one coefficient."""
-        return 1 if self.scalar else self.coefficients.shape[-1]
 
     # ---- new splines from old -----------------------------------------------------------------------------------
 
@@ -272,7 +270,7 @@ class Spline(Frozen):
                 f"matrix of shape {A.shape} and shift of shape {b.shape} given; expected ({self.dim}, {self.dim}) and "
                 f"({self.dim},), or as many rows as the new points have coordinates"
             )
-        flat = self.coefficients.reshape(-1, self._width)
+        flat = self.coefficients.reshape(-1, self.width)
         points, weights = (flat[:, :-1], flat[:, -1:]) if self.rational else (flat, None)
         with np.errstate(over="ignore", invalid="ignore"):
             moved = points @ A.T + (b if weights is None else weights * b)
@@ -347,11 +345,10 @@ class Spline(Frozen):
             If the spline is rational: then `derivatives` gives values, by the quotient rule.
         """
         axis = self.axis(axis)
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
-            raise ParameterError(f"order of derivative {order!r} given; expected an integer of at least 0")
+        order = whole(order, "order of derivative", 0, ParameterError)
         self._require_polynomial("derivative")
         space, coefficients = self.spaces[axis], self.coefficients
-        for _ in range(min(int(order), space.degree + 1)):
+        for _ in range(min(order, space.degree + 1)):
             space, coefficients = derivative(space, coefficients, axis)
         return self.with_axis(axis, space, coefficients)
 

@@ -143,8 +143,7 @@ def remove(
         asked = [x for given in knots for x in given]
         if every:
             space = spline.spaces[spline.axis(axis)]
-            (a, b), t = space.domain, space.knots
-            asked = (t[1:-1] if space.periodic else t[(a < t) & (t < b)]).tolist()
+            asked = space.knots[space.removable].tolist()
         if not asked:
             return spline, 0.0
         removal = kw.remove(spline, asked, axis, allowed)

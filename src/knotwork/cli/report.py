@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -94,7 +95,7 @@ def summary(splines: Sequence[Spline]) -> str:
 
 def comparison(rows: Sequence[dict[str, Any]]) -> str:
     """Return the table of what was done to each spline: points and pieces before and after, bound and time."""
-    shown = rows if len(rows) <= ROWS else sorted(rows, key=lambda r: -_size(r["points"][0]))[: ROWS - 1]
+    shown = rows if len(rows) <= ROWS else sorted(rows, key=lambda r: -math.prod(r["points"][0]))[: ROWS - 1]
     rest = [r for r in rows if r not in shown]
     cells = [_compared(str(r["index"]), [r]) for r in shown]
     if rest:
@@ -104,7 +105,7 @@ def comparison(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
-    counts = [sum(_size(r[what][i]) for r in rows) for what in ("points", "pieces") for i in (0, 1)]
+    counts = [sum(math.prod(r[what][i]) for r in rows) for what in ("points", "pieces") for i in (0, 1)]
     degrees = sorted({_by(r["degree"]) for r in rows})
     bounds = [r["bound"] for r in rows]
     return [
@@ -159,10 +160,3 @@ def _letter(spline: Spline, axis: int) -> str:
 
 def _by(parts: Any) -> str:
     return " × ".join(map(str, parts))
-
-
-def _size(counts: Sequence[int]) -> int:
-    size = 1
-    for n in counts:
-        size *= n
-    return size

@@ -15,7 +15,7 @@ from knotwork.errors import ParameterError
 from knotwork.insertion.merge import discrete_bsplines
 from knotwork.kernel import kernel
 from knotwork.knots import distinct, merged, old_among, old_is_next
-from knotwork.numbers import empty, require_room
+from knotwork.numbers import empty, require_room, whole
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -86,12 +86,11 @@ def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
     [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 1.0], [4.0, 0.0]]
     """
     axis = spline.axis(axis)
-    if isinstance(times, bool) or not isinstance(times, int | np.integer) or times < 0:
-        raise ParameterError(f"times {times!r} given; expected an integer of at least 0")
+    times = whole(times, "times", 0, ParameterError)
     space = spline.spaces[axis]
-    rows = space.dimension + int(times) * len(space.breaks)
+    rows = space.dimension + times * len(space.breaks)
     require_room((rows, spline.coefficients.size // space.dimension), spline.coefficients.dtype)
-    for _ in range(int(times)):
+    for _ in range(times):
         spline = _once(spline, axis)
     return spline
 
@@ -107,13 +106,10 @@ def raised(space: SplineSpace) -> tuple[SplineSpace, Banded]:
     n = space.degree
     t, zero = space.unrolled
     if space.periodic:
-        once = SplineSpace.trusted(0, distinct(space.knots)[0], periodic=True)
-        turns = 2 + len(t) // space.dimension
-        breaks = once.turns(-turns * once.dimension, turns * once.dimension)
-        cut = int(np.searchsorted(breaks, t[0], "left"))
-        breaks = breaks[cut : np.searchsorted(breaks, t[-1], "right")]
-        knots = np.append(merged(space.knots[:-1], once.knots[:-1]), space.knots[-1:])
-        lo, rows = zero + turns * once.dimension - cut, len(knots) - 1
+        once = distinct(space.knots[:-1])[0]
+        knots = np.append(merged(space.knots[:-1], once), space.knots[-1:])
+        breaks, before = space.images(once)
+        lo, rows = zero + before, len(knots) - 1
     else:
         # the functions of degree n + 1 that live in the domain
         breaks = distinct(t)[0]

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from knotwork.errors import FileError, SizeError
-from knotwork.numbers import empty
+from knotwork.numbers import require_room
 
 
 def fetch(path: Path) -> bytes:
@@ -19,7 +19,7 @@ def fetch(path: Path) -> bytes:
     try:
         found = os.stat(path)
         _require_regular(path, found.st_mode)
-        empty((found.st_size,), np.uint8)
+        require_room((found.st_size,), np.uint8)
         data = path.read_bytes()
     except FileNotFoundError:
         raise FileError(f"{path}: there is no such file") from None

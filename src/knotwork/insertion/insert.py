@@ -11,7 +11,7 @@ from knotwork.errors import KnotError
 from knotwork.insertion.boehm import boehm
 from knotwork.insertion.merge import refined, rows_of_matrix
 from knotwork.kernel import extent
-from knotwork.knots import combine, turned
+from knotwork.knots import combine
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -64,7 +64,7 @@ def _one(spline: Spline, u: float, axis: int) -> Spline:
     N = len(t) - n - 1
     if not t[n] <= u <= t[N]:
         space.refinement(u)  # says what is wrong with it
-    blocks = P.reshape(1, N, -1) if axis == 0 else as_blocks(P, axis)
+    blocks = as_blocks(P, axis)
     A, _, B = blocks.shape
     W = np.empty((A, N + 1, B), P.dtype)
     s = np.empty(len(t) + 1)
@@ -94,13 +94,8 @@ def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int
     merged knots and the old knots before knot 0.
     """
     t, left = space.unrolled
-    a, b = space.domain
-    if not len(new):
-        return t, new, len(t), left, left
-    turns = range(-1 - left // space.dimension, 2 + (len(t) - left) // space.dimension)
-    W = np.concatenate([turned(new, np.array(turn), a, b) if turn else new for turn in turns])
-    W = W[np.searchsorted(W, t[0], "left") : np.searchsorted(W, t[-1], "right")]
-    return t, W, len(t), left + int(np.searchsorted(W, a, "left")), left
+    W, before = space.images(new)
+    return t, W, len(t), left + before, left
 
 
 def insertion_matrix(space: SplineSpace, refined: SplineSpace) -> Banded:

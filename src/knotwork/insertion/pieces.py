@@ -160,8 +160,7 @@ def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = F
     start, end = space.domain
     keep_start &= bool(a == start) and not space.periodic
     keep_end &= bool(b == end) and not space.periodic
-    opened = _opened(spline, axis) if space.periodic else spline
-    space = opened.spaces[axis]
+    space, coefficients = _opened(space, spline.coefficients, axis)
     n, t = space.degree, space.knots
     missing = [
         np.repeat(np.asarray([x], t.dtype), max(0, n + 1 - space.multiplicity(x)))
@@ -172,23 +171,18 @@ def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = F
     T = merged(t, new)
     lo = 0 if keep_start else int(np.searchsorted(T, a, "left"))
     hi = len(T) if keep_end else int(np.searchsorted(T, b, "right"))
-    P = refined(t, new, space.dimension, n, as_blocks(opened.coefficients, axis), lo, hi - n - 1 - lo)
+    P = refined(t, new, space.dimension, n, as_blocks(coefficients, axis), lo, hi - n - 1 - lo)
     knots = T if len(T) == hi - lo else T[lo:hi].copy()
-    return opened.with_axis(axis, SplineSpace.trusted(n, knots), along(P, opened.coefficients, axis))
+    return spline.with_axis(axis, SplineSpace.trusted(n, knots), along(P, coefficients, axis))
 
 
-def _opened(spline: Spline, axis: int) -> Spline:
-    """Return a periodic spline over one period as an ordinary one: its knots continue beyond both ends."""
-    space = spline.spaces[axis]
-    n = space.degree
-    P = np.take(spline.coefficients, space.wrapped(-n, space.dimension + n), axis)
-    return spline.with_axis(axis, SplineSpace.trusted(n, _open_knots(space)), P)
-
-
-def _open_knots(space: SplineSpace) -> Array:
-    """Return the knots of one period and `degree` more beyond both ends."""
-    t, zero = space.unrolled
-    return t[zero - space.degree : zero + space.dimension + space.degree + 1].copy()
+def _opened(space: SplineSpace, P: Array, axis: int) -> tuple[SplineSpace, Array]:
+    """Return a periodic space and coefficients over one period as ordinary ones: knots continue beyond both ends."""
+    if not space.periodic:
+        return space, P
+    n, (t, zero) = space.degree, space.unrolled
+    knots = t[zero - n : zero + space.dimension + n + 1].copy()
+    return SplineSpace.trusted(n, knots), np.take(P, space.wrapped(-n, space.dimension + n), axis)
 
 
 def _two_turns(spline: Spline, axis: int) -> Spline:
@@ -203,13 +197,13 @@ def _two_turns(spline: Spline, axis: int) -> Spline:
 
 def _in_pieces(P: Array, axis: int, space: SplineSpace) -> Array:
     """Return coefficients along one axis with every break of the domain of multiplicity degree + 1, clamped."""
+    space, P = _opened(space, P, axis)
     n, t = space.degree, space.knots
     a, b = space.domain
-    blocks, stop = as_blocks(P, axis), space.dimension
-    if space.periodic:
-        t, blocks = _open_knots(space), np.ascontiguousarray(blocks[:, space.wrapped(-n, stop + n)])
-        stop += n
     values, counts = distinct(t[np.searchsorted(t, a, "left") : np.searchsorted(t, b, "right")])
-    rows = (len(values) - 1) * (n + 1)
-    out = refined(t, np.repeat(values, n + 1 - counts), stop, n, blocks, int(np.searchsorted(t, a, "left")), rows)
-    return along(out, P, axis)
+    new, first, rows = (
+        np.repeat(values, n + 1 - counts),
+        int(np.searchsorted(t, a, "left")),
+        (len(values) - 1) * (n + 1),
+    )
+    return along(refined(t, new, space.dimension, n, as_blocks(P, axis), first, rows), P, axis)

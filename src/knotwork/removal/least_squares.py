@@ -93,7 +93,7 @@ def _in_order(A: Banded) -> tuple[Array, Array]:
         return A.first, A.entries
     n, width = A.columns, A.entries.shape[1]
     column = (A.first[:, None] + np.arange(width)) % n
-    folded = np.where(2 * column < n, 2 * column, 2 * (n - 1 - column) + 1)
+    folded = _folded(column, n)
     band = min(2 * width, n)
     first = np.minimum(folded.min(axis=1), n - band)
     X = np.zeros((len(first), band), A.entries.dtype)
@@ -105,5 +105,9 @@ def _in_order(A: Banded) -> tuple[Array, Array]:
 
 def _out_of_order(z: Array) -> Array:
     """Undo the folding of columns."""
-    column = np.arange(len(z))
-    return z[np.where(2 * column < len(z), 2 * column, 2 * (len(z) - 1 - column) + 1)]
+    return z[_folded(np.arange(len(z)), len(z))]
+
+
+def _folded(column: Array, n: int) -> Array:
+    """Return where a column goes."""
+    return np.where(2 * column < n, 2 * column, 2 * (n - 1 - column) + 1)

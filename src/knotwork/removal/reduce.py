@@ -138,14 +138,8 @@ def reduce(spline: Spline, tolerance: Any, *, progress: Progress | None = None) 
             f"reduce takes curves; this spline has {len(spline.spaces)} parameters: remove(…, axis=…) takes named knots"
         )
     original = Original(spline, 0, tolerance)
-    t = spline.space.knots
-    a, b = spline.space.domain
-    candidates = (t > a) & (t < b)
-    if spline.space.periodic:  # the seam stays, once
-        candidates = t < b
-        candidates[0] = False
-    result, mask = search(original, candidates, progress)
-    return Reduction(result.spline, original.reported(result.bound), t[~mask])
+    result, mask = search(original, spline.space.removable, progress)
+    return Reduction(result.spline, original.reported(result.bound), spline.space.knots[~mask])
 
 
 class Trial(NamedTuple):
@@ -169,7 +163,7 @@ class Original:
         if (given < 0).any():
             raise ParameterError(f"tolerance {tolerance} given; expected at least 0")
         self.one_number = given.ndim == 0
-        flat = spline.coefficients.reshape(-1, spline.coefficients.shape[-1] if not spline.scalar else 1)
+        flat = spline.coefficients.reshape(-1, spline.width)
         self.exact = flat.dtype == object
         n = self.space.degree
         rounding = 0 if self.exact else 8 * (n + 1) * np.finfo(flat.dtype).eps
@@ -181,21 +175,24 @@ class Original:
         else:
             size = np.abs(flat).max(axis=0)
         self.allowed = np.maximum(np.broadcast_to(given, size.shape), size * rounding)
-        # points along the axis, as one curve with many components
-        blocks = as_blocks(spline.coefficients, axis)
-        self.shape = blocks.shape
-        self.d = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(blocks.shape[1], -1)
+        self.shape = as_blocks(spline.coefficients, axis).shape
+        self.d = self._as_curve(spline.coefficients)
         t, zero = self.space.unrolled
         N = self.space.dimension
         self.weight = (t[zero + n + 1 : zero + N + n + 1] - t[zero : zero + N]) / (n + 1)
         if not self.exact:
-            self.d = self.d.astype(np.result_type(self.d.dtype, np.float64))
             self.weight = self.weight / self.weight.max()
         scale = np.array([self._per_tolerance(*pair) for pair in zip(self.allowed, size, strict=True)])
         if spline.rational:
             smallest = flat[:, -1].min()
             scale = np.append(scale, (scale * self.reach).max()) / smallest
         self.scale = np.tile(scale.astype(object if self.exact else np.float64), self.d.shape[1] // len(scale))
+
+    def _as_curve(self, coefficients: Array) -> Array:
+        """Return coefficients as those of one curve along the axis, with many components: (n, …), float64 at least."""
+        blocks = as_blocks(coefficients, self.axis).transpose(1, 0, 2)
+        d = np.ascontiguousarray(blocks).reshape(len(blocks), -1)
+        return d if self.exact else d.astype(np.result_type(d.dtype, np.float64))
 
     def _per_tolerance(self, allowed: Any, size: Any) -> Any:
         """Return what makes an error a fraction of the tolerance; where that is 0, of next to nothing."""
@@ -214,7 +211,7 @@ class Original:
         origin to the centre of the points leaves |f| at most `reach`.
         """
         back = refine_to(other, self.axis, self.space, gone).coefficients
-        change = (back - self.spline.coefficients).reshape(-1, 1 if self.spline.scalar else back.shape[-1])
+        change = (back - self.spline.coefficients).reshape(-1, self.spline.width)
         bound: Array
         if not self.spline.rational:
             bound = np.abs(change).max(axis=0)
@@ -254,11 +251,10 @@ class Original:
         c = trial.spline.coefficients
         if self.spline.rational:  # about the centre, as the bound is taken
             c = np.concatenate([c[..., :-1] - self.centre * c[..., -1:], c[..., -1:]], axis=-1)
-        d = np.ascontiguousarray(as_blocks(c, self.axis).transpose(1, 0, 2)).reshape(space.dimension, -1)
+        d = self._as_curve(c)
         if space.periodic:
             d = d[space.wrapped(-zero, len(t) - space.degree - 1)]
         last = zero + np.searchsorted(space.knots, values, "right") - 1
-        d = d if self.exact else d.astype(np.result_type(d.dtype, np.float64))
         # knots at the ends of a domain that is not clamped lack neighbours to be ranked by: they are tried first
         a, b = space.domain
         inner = (values > a) & (values < b) | space.periodic
@@ -353,8 +349,7 @@ def _last_copies(candidates: Array, owner: Array, copies: Array, picked: Array) 
 
 def grouped(costs: Array) -> list[Array]:
     """Return the indices of the costs in groups of about equal cost, cheapest first: below ½, then by powers of two."""
-    with np.errstate(divide="ignore"):
-        group = np.where(costs <= 0.5, 0, np.floor(np.log2(2 * np.maximum(costs, 0.5))) + 1)
+    group = np.where(costs <= 0.5, 0, np.floor(np.log2(2 * np.maximum(costs, 0.5))) + 1)
     return [np.flatnonzero(group == g) for g in np.unique(group)]
 
 

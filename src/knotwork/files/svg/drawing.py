@@ -7,6 +7,7 @@ import numpy as np
 from knotwork.errors import FileError
 from knotwork.files.svg.cubics import cubics
 from knotwork.insertion import to_bezier
+from knotwork.knots import multiplicities
 from knotwork.numbers import Array
 from knotwork.spline import Spline
 
@@ -68,7 +69,7 @@ def _pieces(spline: Spline, place: str) -> Array:
         nets = np.concatenate([nets, np.ones((*nets.shape[:-1], 1))], axis=-1)
     # where the curve has no jump, pieces meet; what rounding says otherwise is not drawn as a gap
     t, x = spline.space.knots, breaks[:-1]
-    joins = np.searchsorted(t, x, "right") - np.searchsorted(t, x, "left") <= spline.space.degree
+    joins = multiplicities(t, x) <= spline.space.degree
     nets[1:, 0] = np.where(joins[1:, None], nets[:-1, -1], nets[1:, 0])
     if spline.space.periodic and joins[0]:
         nets[-1, -1] = nets[0, 0]
