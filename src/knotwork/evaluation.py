@@ -11,6 +11,7 @@ import numpy as np
 from knotwork.banded import Banded, apply_rows
 from knotwork.errors import ParameterError
 from knotwork.kernel import extent, kernel
+from knotwork.knots import last_at_most
 from knotwork.numbers import Array, empty, in_arithmetic_of, real_numbers, require_finite
 from knotwork.parallel import in_parts
 from knotwork.space import SplineSpace
@@ -59,13 +60,7 @@ def locate(t, table, walk, first, last, u, span):  # type: ignore[no-untyped-def
             lo = last
         elif x < t[lo] or x >= t[lo + 1]:
             c = cell(x, t[first], t[last + 1], cells)
-            lo, hi = table[c], table[c + 1]
-            while lo < hi:
-                q = (lo + hi + 1) // 2
-                if t[q] <= x:
-                    lo = q
-                else:
-                    hi = q - 1
+            lo = last_at_most(t, table[c], table[c + 1], x)
         span[i] = lo
 
 

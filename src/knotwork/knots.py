@@ -69,6 +69,18 @@ def require_multiplicity(knots: Array, degree: int) -> None:
 
 
 @kernel
+def last_at_most(t, lo, hi, x):  # type: ignore[no-untyped-def]
+    """Return the last q in [lo, hi] with t[q] <= x; lo if there is none."""
+    while lo < hi:
+        q = (lo + hi + 1) // 2
+        if t[q] <= x:
+            lo = q
+        else:
+            hi = q - 1
+    return lo
+
+
+@kernel
 def old_is_next(U, j, W, k, stop):  # type: ignore[no-untyped-def]
     """Tell whether U[j] precedes W[k] in the merge: of equals old first, but what is left of W before U[stop]."""
     return k >= len(W) or (j < stop and U[j] <= W[k])

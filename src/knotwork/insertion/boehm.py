@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from knotwork.kernel import kernel
+from knotwork.knots import last_at_most
 
 
 @kernel
@@ -12,14 +13,7 @@ def boehm(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
     The new knot vector goes to s. Returns how often u was a knot before; q is sought between `first` and `last`, and
     is the last interval that is not empty where u is the right end.
     """
-    lo, hi = first, last
-    while lo < hi:
-        q = (lo + hi + 1) // 2
-        if t[q] <= u:
-            lo = q
-        else:
-            hi = q - 1
-    q = lo
+    at = q = last_at_most(t, first, last, u)
     m = 0
     while q - m >= 0 and t[q - m] == u:
         m += 1
@@ -28,7 +22,7 @@ def boehm(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
         q += 1
     if m > n:
         return m
-    q = lo
+    q = at
     for i in range(q + 1):
         s[i] = t[i]
     s[q + 1] = u
