@@ -17,6 +17,7 @@ import pytest
 
 import knotwork as kw
 from knotwork import kernel as kernels
+from knotwork.conversion.oslo import conversion_matrix, converted
 from knotwork.kernel import Kernel
 
 SOURCE = Path(kw.__file__).parent.parent
@@ -109,6 +110,9 @@ def work_on(spline, axis=0):
     kw.insertion_matrix(space, space.with_knots(inside))
     kw.split(spline, middle, axis=axis)
     kw.elevate(spline, 2, axis=axis)
+    refined = space.with_knots(inside)
+    conversion_matrix(refined, space)
+    converted(space, refined, spline.coefficients, axis)
     kw.to_bezier(spline)
     u = [inside] * len(spline.spaces)
     spline(*u)
