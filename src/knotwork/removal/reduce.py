@@ -18,8 +18,8 @@ from knotwork.banded import along, as_blocks
 from knotwork.errors import ParameterError
 from knotwork.insertion.insert import matrix_to, refine_to
 from knotwork.knots import distinct, multiplicities
+from knotwork.least_squares import least_squares
 from knotwork.numbers import Array, in_arithmetic_of, real_numbers
-from knotwork.removal.least_squares import least_squares
 from knotwork.removal.ranking import ranked
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import knotwork as kw
 import strategies as kinds
 from knotwork.banded import Banded
-from knotwork.removal.least_squares import least_squares
+from knotwork.least_squares import least_squares
 
 
 def solved(A, b):
