@@ -7,6 +7,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from knotwork import stability as stability
     from knotwork.conversion import elevate
     from knotwork.files import Written, read, write
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
@@ -34,6 +35,7 @@ __all__ = [
     "reduce",
     "remove",
     "split",
+    "stability",
     "surface",
     "to_bezier",
     "trim",
@@ -48,6 +50,7 @@ _PARTS = {
     "removal": ("Reduction", "Removal", "reduce", "remove"),
     "space": ("SplineSpace",),
     "spline": ("Spline", "curve", "surface"),
+    "stability": (),
 }
 
 

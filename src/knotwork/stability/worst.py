@@ -1,0 +1,150 @@
+"""The largest condition numbers: over all places of a knot, over all knot vectors (§6.4, §6.5)."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any, Self
+
+import numpy as np
+
+from knotwork.conversion.chebyshev import chebyshev
+from knotwork.errors import KnotError, ParameterError
+from knotwork.numbers import real_numbers, whole
+from knotwork.space import SplineSpace
+from knotwork.stability.condition import condition
+
+
+class Worst(float):
+    """A largest condition number, and the knot that has it.
+
+    Attributes
+    ----------
+    x : float
+        s / (1 - s), the ratio in which the knot divides [0, 1].
+    s : float
+        The knot.
+    """
+
+    x: float
+    s: float
+
+    def __new__(cls, value: float, x: float) -> Self:
+        """Return the value together with the ratio."""
+        self = super().__new__(cls, value)
+        self.x, self.s = x, x / (1 + x)
+        return self
+
+
+def worst(k: int) -> Worst:
+    """Return δ_k, the largest condition number of the insertion of one knot for order k, over all knot vectors.
+
+    It is that of the Bernstein basis on [0, 1] (Proposition 6.5.2): k for odd orders, at the middle, and a little less
+    than k for even ones.
+
+    Parameters
+    ----------
+    k : int
+        The order, degree + 1.
+
+    Notes
+    -----
+    For k = 2m > 2 the ratio x > 1 is the root of x^m + x^-m = 1 + x, that is (6.43), and
+    δ_k = 1 + 2 (x + x² + … + x^{m-1}). With x = e^y the equation is 4 sinh²(m y / 2) = e^y - 1, which Newton's
+    method solves to full precision from above, y = 1/m² or more: both sides are convex, and nothing cancels.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> cubic = kw.stability.worst(4)
+    >>> float(cubic), cubic.x
+    (3.649435918604...
+    """
+    k = whole(k, "order", 1, ParameterError)
+    m = k // 2
+    if k % 2 or m == 1:
+        return Worst(k if k % 2 else 1, 1.0)
+    y = 2 / m**2
+    while True:
+        excess = 4 * math.sinh(m * y / 2) ** 2 - math.expm1(y)
+        nearer = y - excess / (2 * m * math.sinh(m * y) - math.exp(y))
+        if not nearer < y:
+            return Worst(1 + 2 * math.fsum(math.exp(i * y) for i in range(1, m)), math.exp(y))
+        y = nearer
+
+
+def uniform(k: int, s: Any) -> Any:
+    """Return the condition number of inserting s into knots at the integers, for order k.
+
+    Parameters
+    ----------
+    k : int
+        The order, degree + 1.
+    s : number
+        From 0 to 1; a Fraction gives the exact condition number.
+
+    Notes
+    -----
+    Largest at s = 1/2 for odd k and at s = 0 for even k, where it grows like √(πk/2) (Theorem 6.4.1).
+
+    Examples
+    --------
+    >>> from fractions import Fraction
+    >>> import knotwork as kw
+    >>> kw.stability.uniform(3, Fraction(1, 2))
+    Fraction(5, 3)
+    """
+    k = whole(k, "order", 1, ParameterError)
+    knot = real_numbers(s, "s", KnotError)
+    integers = SplineSpace(k - 1, np.arange(1 - k, k + 1))
+    return condition(integers.in_exact_arithmetic() if knot.dtype == object else integers, knot)
+
+
+def kappa(space: SplineSpace) -> float:
+    """Return the condition number of the B-spline basis: the largest coefficient of a spline with values in [-1, 1].
+
+    No refinement of a clamped space has a larger condition number, and fine ones come close (Proposition 6.2.1).
+
+    Raises
+    ------
+    KnotError
+        If the space is periodic or a basis function vanishes on the domain.
+
+    Notes
+    -----
+    The largest coefficient of the Chebyshev spline of each part between jumps.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> round(kw.stability.kappa(kw.SplineSpace.bezier(3, [0, 1])), 12)
+    5.0
+    """
+    n, t = space.degree, space.knots
+    a, b = space.domain
+    jumps = [] if space.periodic else [x for x in space.breaks.tolist() if a < x < b and space.multiplicity(x) == n + 1]
+    cuts = [0, *np.searchsorted(t, np.array(jumps, t.dtype), "left").tolist(), space.dimension]
+    parts = [SplineSpace(n, t[lo : hi + n + 1]) for lo, hi in zip(cuts, cuts[1:])] if jumps else [space]
+    return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in parts)
+
+
+def basis_condition(k: int) -> Fraction:
+    """Return d_k, the condition number of the Bernstein basis of order k.
+
+    Parameters
+    ----------
+    k : int
+        The order, degree + 1.
+
+    Notes
+    -----
+    The largest coefficient of a Chebyshev polynomial: max C(2N, 2i) / C(N, i), N = k - 1 (Lyche 1978).
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> [str(kw.stability.basis_condition(k)) for k in (3, 4, 5)]
+    ['3', '5', '35/3']
+    """
+    N = whole(k, "order", 1, ParameterError) - 1
+    return max(Fraction(math.comb(2 * N, 2 * i), math.comb(N, i)) for i in range(N + 1))
