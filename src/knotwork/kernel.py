@@ -33,8 +33,9 @@ PER_ELEMENT = 1e-6
 #: dimensions up to this one are known to the compiler, which unrolls the loops over them
 UNROLLED = 5
 
-#: how Numba compiles: kernels called by kernels are inlined, and no rule of arithmetic is relaxed
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True}
+#: how Numba compiles: kernels called by kernels are inlined, no rule of arithmetic is relaxed, and as kernels allocate
+#: nothing, no references are counted
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True, "_nrt": False}
 
 KERNELS: list[Kernel] = []
 
