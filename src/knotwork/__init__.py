@@ -7,11 +7,14 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from knotwork import arithmetic as arithmetic
+    from knotwork import progressive as progressive
     from knotwork import stability as stability
-    from knotwork.conversion import elevate
+    from knotwork.conversion import Conversion, convert, elevate
     from knotwork.files import Written, read, write
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
+    from knotwork.progressive import blossom, segment
     from knotwork.removal import Reduction, Removal, reduce, remove
     from knotwork.space import SplineSpace
     from knotwork.spline import Spline, curve, surface
@@ -19,21 +22,27 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Conversion",
     "Reduction",
     "Removal",
     "Spline",
     "SplineSpace",
     "Written",
+    "arithmetic",
+    "blossom",
     "clamp",
+    "convert",
     "curve",
     "elevate",
     "from_bezier",
     "insert",
     "insertion_matrix",
     "plot",
+    "progressive",
     "read",
     "reduce",
     "remove",
+    "segment",
     "split",
     "stability",
     "surface",
@@ -43,10 +52,12 @@ __all__ = [
 ]
 
 _PARTS = {
-    "conversion": ("elevate",),
+    "arithmetic": (),
+    "conversion": ("Conversion", "convert", "elevate"),
     "files": ("Written", "read", "write"),
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),
+    "progressive": ("blossom", "segment"),
     "removal": ("Reduction", "Removal", "reduce", "remove"),
     "space": ("SplineSpace",),
     "spline": ("Spline", "curve", "surface"),

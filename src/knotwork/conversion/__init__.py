@@ -1,5 +1,6 @@
 """Conversion between spline spaces (chapter 5)."""
 
+from knotwork.conversion.convert import Conversion, convert
 from knotwork.conversion.elevation import elevate
 
-__all__ = ["elevate"]
+__all__ = ["Conversion", "convert", "elevate"]

@@ -1,0 +1,119 @@
+"""What holds two spline spaces: the smallest space above both, the way up to it, and differences measured there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.banded import Banded
+from knotwork.conversion.elevation import raised
+from knotwork.conversion.oslo import conversion_matrix
+from knotwork.insertion.insert import insertion_matrix
+from knotwork.insertion.merge import rows_of_matrix
+from knotwork.knots import combine, distinct, merged, multiplicities
+from knotwork.numbers import Array
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+
+def breaks_and_copies(space: SplineSpace) -> tuple[Array, Array]:
+    """Return the knots at which splines of the space may not be smooth, and how often each occurs.
+
+    Those inside the domain; of a period all, the seam at its start.
+    """
+    if space.periodic:
+        return distinct(space.knots[:-1])
+    a, b = space.domain
+    t = space.knots
+    return distinct(t[(t > a) & (t < b)])
+
+
+def space_over(degree: int, domain: tuple[Any, Any], values: Array, copies: Array, periodic: bool) -> SplineSpace:
+    """Return the space over a domain with knots inside it, its ends clamped; of a period, with the knots in it."""
+    inner = np.repeat(values, copies)
+    a, b = (np.asarray([x], inner.dtype) for x in domain)
+    if periodic:
+        return SplineSpace(degree, np.concatenate([inner, b]), periodic=True)
+    return SplineSpace(degree, np.concatenate([np.repeat(a, degree + 1), inner, np.repeat(b, degree + 1)]))
+
+
+def holds(target: SplineSpace, space: SplineSpace) -> bool:
+    """Tell whether every spline of `space` lies in `target`, as functions on the domain they share."""
+    values, copies = breaks_and_copies(space)
+    higher = target.degree - space.degree
+    return higher >= 0 and bool((multiplicities(target.knots, values) >= copies + higher).all())
+
+
+def common_refinement(space: SplineSpace, other: SplineSpace) -> SplineSpace:
+    """Return the smallest space with clamped ends that holds both, over the domain they share."""
+    degree = max(space.degree, other.degree)
+    found = [breaks_and_copies(each) for each in (space, other)]
+    values = distinct(merged(found[0][0], found[1][0]))[0]
+    copies = np.zeros(len(values), int)
+    for each, (own, count) in zip((space, other), found, strict=True):
+        at = np.searchsorted(values, own)
+        copies[at] = np.maximum(copies[at], count + (degree - each.degree))
+    return space_over(degree, space.domain, values, copies, space.periodic)
+
+
+def embedding(space: SplineSpace, finer: SplineSpace) -> Banded:
+    """Return the matrix that takes control points over `space` to those of the same spline over a space that holds it.
+
+    Rows are not negative and sum to one, if `finer` is clamped or periodic.
+    """
+    matrix = None
+    while space.degree < finer.degree:
+        space, step = raised(space)
+        matrix = step if matrix is None else product(step, matrix)
+    refinement = _refinement(space, finer)
+    return refinement if matrix is None else product(refinement, matrix)
+
+
+def _refinement(space: SplineSpace, finer: SplineSpace) -> Banded:
+    """Return the embedding in a space of the same degree."""
+    if space.periodic:
+        return insertion_matrix(space, finer)
+    n, t = space.degree, space.knots
+    a, b = space.domain
+    if finer.multiplicity(a) <= n or finer.multiplicity(b) <= n:
+        return conversion_matrix(space, finer)
+    new = combine(finer.knots, t[(t >= a) & (t <= b)], np.subtract)
+    lo = int(np.searchsorted(t, a, "left"))
+    start, count, E = rows_of_matrix(t, new, space.dimension, n, lo, finer.dimension)
+    return Banded.packed(start, count, E, space.dimension)
+
+
+def product(A: Banded, B: Banded) -> Banded:
+    """Return the matrix A·B of which every row has the entries of the rows of B that A combines."""
+    rows, (of_a, of_b) = len(A.first), (A.entries.shape[1], B.entries.shape[1])
+    used = (A.first[:, None] + np.arange(of_a)) % A.columns
+    offset = (B.first[used] - B.first[used[:, :1]]) % B.columns
+    E = np.zeros((rows, min(int(offset.max()) + of_b, B.columns)), np.result_type(A.entries, B.entries))
+    for r in range(of_a):
+        for s in range(of_b):
+            E[np.arange(rows), (offset[:, r] + s) % B.columns] += A.entries[:, r] * B.entries[used[:, r], s]
+    first = B.first[used[:, 0]].copy()
+    return Banded(first, E, B.columns)
+
+
+def difference(f: Spline, g: Spline) -> Any:
+    """Return the largest coefficient of f − g on the common refinement in every parameter: it bounds |f − g|.
+
+    Of rational splines A/w and B/v, the difference is ((B − A) − f·(v − w)) / v, taken about the middle of the points
+    of f, so that |f| is at most half their extent; infinite if a weight v is not positive.
+    """
+    F, G = f.coefficients, g.coefficients
+    for axis, (space, other) in enumerate(zip(f.spaces, g.spaces, strict=True)):
+        finer = common_refinement(space, other)
+        F, G = embedding(space, finer).apply(F, axis), embedding(other, finer).apply(G, axis)
+    if not f.rational:
+        return np.abs(G - F).max(keepdims=True).item()
+    v, points = G[..., -1], f.points.reshape(-1, f.dim)
+    if v.min() <= 0:
+        return float("inf")
+    low, high = points.min(axis=0), points.max(axis=0)
+    centre, reach = low + (high - low) / 2, (high - low) / 2
+    change = G - F
+    dw = change[..., -1:]
+    return ((np.abs(change[..., :-1] - centre * dw) + reach * np.abs(dw)).max(keepdims=True) / v.min()).item()

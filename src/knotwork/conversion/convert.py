@@ -1,0 +1,216 @@
+"""The face of conversion: from any spline space to any other over the same domain (chapter 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.banded import Banded, along, as_blocks
+from knotwork.conversion.chebyshev import chebyshev
+from knotwork.conversion.common import common_refinement, difference, embedding, holds
+from knotwork.conversion.elevation import raised
+from knotwork.conversion.oslo import conversion_matrix, require_convertible
+from knotwork.elimination import solve
+from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.evaluation import Basis
+from knotwork.least_squares import least_squares
+from knotwork.numbers import Array, exact
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+#: norms of conversion matrices up to this one are small: at most four bits are lost
+SMALL = 16
+WAYS = ("auto", "oslo", "interpolation", "least-squares")
+
+
+class Conversion(NamedTuple):
+    """The result of a conversion."""
+
+    spline: Spline
+    #: the spline given and the one returned differ by this much at most, anywhere, in any coordinate
+    bound: Any
+    #: whether they are the same function; in float arithmetic, up to rounding
+    exact: bool
+    #: what was done: "oslo", "interpolation" or "least-squares"; one a parameter where they differ
+    how: Any
+
+
+def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = "auto") -> Conversion:
+    """Return a spline over another space: the same function if that holds it, otherwise one near it.
+
+    Parameters
+    ----------
+    spline : Spline
+    target : SplineSpace or sequence of SplineSpace
+        Of any degree and knots, over the domain of the spline. One a parameter, or a single one with `axis`.
+    axis : int, optional
+        The only parameter to convert.
+    how : {"auto", "oslo", "interpolation", "least-squares"}
+        ``"oslo"``: the generalised Oslo algorithm, the coefficients of the operator of de Boor and Fix; not for a lower
+        degree. ``"interpolation"``: at the extrema of the target's Chebyshev spline. ``"least-squares"``: the
+        coefficients of the difference on the common refinement, times √(t[i+n+1] − t[i]), have the least squares.
+        ``"auto"``: Oslo where the target holds every spline of the space, where no row of the matrix sums to
+        more than 16 in absolute value, or where exact arithmetic shows that nothing is lost; otherwise least squares.
+
+    Returns
+    -------
+    Conversion
+        ``spline``, ``bound``, ``exact`` and ``how``. The bound is the largest coefficient of the difference on the
+        common refinement, which bounds the difference everywhere; for a rational spline, the bound that follows from it
+        for the points. ``exact`` is true if the target holds the space, or if the bound is 0; in float arithmetic, if
+        it is no larger than rounding explains, 8 (degree + 1) ε max |coordinate|.
+
+    Raises
+    ------
+    KnotError
+        If domains differ, only one space is periodic, or interpolation cannot be done in the target.
+    ParameterError
+        If `how` is not one of the four or not possible, or targets and parameters do not match.
+    PointError
+        If a rational spline would get a weight that is not positive.
+
+    Notes
+    -----
+    The generalised Oslo algorithm is exact on all splines in both spaces (Theorem 5.4.2), but not always stable: where
+    many knots go at once, weights of either sign grow without bound (Proposition 5.6.1). The other two are stable.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> pieces = kw.curve([0, 1, 2, 3, 4], degree=2, knots=[0, 0, 0, 1, 1, 2, 2, 2])
+    >>> found = kw.convert(pieces, kw.SplineSpace(2, [0, 0, 0, 1, 2, 2, 2]))
+    >>> found.spline.points.tolist(), found.exact, found.how
+    ([0.0, 1.0, 3.0, 4.0], True, 'oslo')
+    """
+    targets = _targets(spline, target, axis)
+    if not isinstance(how, str) or how not in WAYS:
+        raise ParameterError(f"how={how!r} given; expected one of {', '.join(map(repr, WAYS))}")
+    spline, targets = _in_one_arithmetic(spline, targets)
+    for i, space in targets.items():
+        require_convertible(spline.spaces[i], space)
+        if how == "oslo" and space.degree < spline.spaces[i].degree:
+            raise ParameterError(
+                f"how='oslo' from degree {spline.spaces[i].degree} to {space.degree}: expected 'least-squares' or "
+                f"'interpolation' for a lower degree"
+            )
+    result, used = spline, {}
+    for i, space in targets.items():
+        if space != spline.spaces[i]:
+            result, used[i] = _along_axis(result, i, space, how)
+    ways = tuple(dict.fromkeys(used.values()))
+    return concluded(spline, result, ways[0] if len(ways) == 1 else tuple(used.values()) or "oslo")
+
+
+def concluded(spline: Spline, result: Spline, how: Any) -> Conversion:
+    """Return the result of a conversion with what it lost, or raise if it has weights that are not positive."""
+    if result.rational and result.coefficients[..., -1].min() <= 0:
+        raise PointError(
+            f"a weight of the result would be {result.coefficients[..., -1].min()}; expected positive ones"
+        )
+    if all(holds(new, old) for new, old in zip(result.spaces, spline.spaces, strict=True)):
+        return Conversion(result, 0 * abs(spline.coefficients.flat[0]), True, how)
+    bound = difference(spline, result)
+    return Conversion(result, bound, bool(bound <= rounding(spline)), how)
+
+
+def rounding(spline: Spline) -> Any:
+    """Return what rounding explains: 8 (degree + 1) ε max |coordinate|, or 0 in exact arithmetic."""
+    points = spline.points
+    if points.dtype == object:
+        return 0
+    return 8 * (max(spline.degree) + 1) * np.finfo(points.dtype).eps * np.abs(points).max()
+
+
+def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineSpace]:
+    """Return the space wanted for each parameter that is to be converted."""
+    if axis is not None:
+        axes = [spline.axis(axis)]
+    else:
+        axes = list(range(len(spline.spaces)))
+    spaces = [target] if isinstance(target, SplineSpace) else list(target) if isinstance(target, list | tuple) else []
+    if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
+        raise ParameterError(f"target {target!r} given; expected a SplineSpace, or one a parameter")
+    if len(spaces) != len(axes):
+        raise ParameterError(f"{len(spaces)} target spaces given for {len(axes)} parameters; axis=… names a single one")
+    return dict(zip(axes, spaces, strict=True))
+
+
+def _in_one_arithmetic(spline: Spline, targets: dict[int, SplineSpace]) -> tuple[Spline, dict[int, SplineSpace]]:
+    """Return all in exact arithmetic if anything is."""
+    if spline.coefficients.dtype == object or any(space.exact for space in targets.values()):
+        return spline.in_exact_arithmetic(), {i: space.in_exact_arithmetic() for i, space in targets.items()}
+    return spline, targets
+
+
+def _along_axis(spline: Spline, axis: int, target: SplineSpace, how: str) -> tuple[Spline, str]:
+    """Return the spline converted along one axis, and how."""
+    space = spline.spaces[axis]
+    if how == "interpolation":
+        return _by_interpolation(spline, axis, target), how
+    if how == "least-squares":
+        return _by_least_squares(spline, axis, target), how
+    if holds(target, space):
+        return _applied(embedding(space, target), spline, axis, target), "oslo"
+    if target.degree >= space.degree:
+        step = spline
+        while step.spaces[axis].degree < target.degree:
+            higher, up = raised(step.spaces[axis])
+            step = _applied(up, step, axis, higher)
+        matrix = conversion_matrix(step.spaces[axis], target)
+        found = _applied(matrix, step, axis, target)
+        small = np.abs(matrix.entries).sum(axis=1).max() <= SMALL
+        if how == "oslo" or small or (space.exact and difference(spline, found) == 0):
+            return found, "oslo"
+    return _by_least_squares(spline, axis, target), "least-squares"
+
+
+def _applied(matrix: Banded, spline: Spline, axis: int, target: SplineSpace) -> Spline:
+    """Return the spline whose coefficients are the matrix times those given."""
+    return spline.with_axis(axis, target, matrix.apply(spline.coefficients, axis))
+
+
+def _by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
+    """Minimise ‖W (A b − c)‖₂ on the common refinement, W = diag √(t[i+n+1] − t[i])."""
+    space = spline.spaces[axis]
+    finer = common_refinement(space, target)
+    c = embedding(space, finer).apply(spline.coefficients, axis)
+    A = embedding(target, finer)
+    t, zero = finer.unrolled
+    k, rows = finer.order, finer.dimension
+    weight = t[zero + k : zero + k + rows] - t[zero : zero + rows]
+    return _solved(spline, axis, target, c, lambda y: least_squares(A, weight, y))
+
+
+def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
+    """Interpolate at the extrema of the Chebyshev spline of the target."""
+    x = chebyshev(target).extrema
+    if target.exact:
+        x = exact(x, "extrema", KnotError)
+        x[0], x[-1] = target.domain
+    values = _collocation(spline.spaces[axis], x).apply(spline.coefficients, axis)
+    A = _collocation(target, x)
+    return _solved(spline, axis, target, values, lambda y: solve(A, y))
+
+
+def _collocation(space: SplineSpace, x: Array) -> Banded:
+    """Return the matrix of the basis functions at x."""
+    first, E = Basis(space, x).rows(x)
+    return Banded(first, E[0], space.dimension)
+
+
+def _solved(
+    spline: Spline, axis: int, target: SplineSpace, values: Array, solution: Callable[[Array], Array]
+) -> Spline:
+    """Return the spline over `target` whose coefficients solve a system along one axis for every column of values."""
+    blocks = as_blocks(values, axis)
+    A, rows, B = blocks.shape
+    y = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(rows, A * B)
+    if y.dtype != object:  # float32 is solved in float64, and complex numbers as pairs of real ones
+        y = y.astype(np.result_type(y.dtype, np.float64)).view(np.float64)
+    b = np.ascontiguousarray(solution(y))
+    if values.dtype.kind == "c":
+        b = b.view(np.complex128)
+    found = b.reshape(target.dimension, A, B).transpose(1, 0, 2).astype(values.dtype)
+    return spline.with_axis(axis, target, along(np.ascontiguousarray(found), spline.coefficients, axis))
