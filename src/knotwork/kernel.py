@@ -17,6 +17,8 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +41,11 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline":
 
 KERNELS: list[Kernel] = []
 
+#: what is put around a function, to count or record its calls
+Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
+
 _OBJECT = np.dtype(object)
+_wraps: ContextVar[dict[str, Wrap] | None] = ContextVar("wraps", default=None)
 _lock = threading.RLock()
 _spent = 0.0
 
@@ -64,6 +70,7 @@ class Kernel:
         functools.update_wrapper(self, source)
         self.source = source
         self.names = names or {}
+        self._variants: dict[frozenset[tuple[str, Kernel]], Kernel] = {}
         self._compiled: Callable[..., Any] | None = None
         KERNELS.append(self)
 
@@ -77,19 +84,27 @@ class Kernel:
             return self._first_calls(args)
         for a in args:
             if type(a) is np.ndarray and a.dtype is _OBJECT:
-                return self.plain(*args)
+                return self._over_objects(*args)
         return compiled(*args)
 
     def variant(self, **names: Kernel) -> Kernel:
-        """Return the same source with the given kernel names bound to other kernels."""
-        return Kernel(self.source, {**self.names, **names})
+        """Return the same source with the given names bound to other kernels, in the kernels it calls too."""
+        key = frozenset(names.items())
+        if key not in self._variants:
+            below = {name: callee.variant(**names) for name, callee in self._callees() if callee._calls(names)}
+            self._variants[key] = Kernel(self.source, {**self.names, **below, **names})
+        return self._variants[key]
+
+    def _calls(self, names: dict[str, Kernel]) -> bool:
+        """Tell whether the source, or that of a kernel it calls, calls one of these names."""
+        return any(name in names or callee._calls(names) for name, callee in self._callees())
 
     def _first_calls(self, args: tuple[Any, ...]) -> Any:
         """Run plain until the accumulated work pays for compiled code."""
         global _spent
         arrays = [a for a in args if isinstance(a, np.ndarray)]
         if any(a.dtype == _OBJECT for a in arrays):
-            return self.plain(*args)
+            return self._over_objects(*args)
         # compiled code is silent about overflow and 0/0, so the plain source is too
         if mode == "never":
             with np.errstate(all="ignore"):
@@ -121,7 +136,16 @@ class Kernel:
     @functools.cached_property
     def plain(self) -> FunctionType:
         """The source as it stands; the kernels it calls are plain too."""
-        return self._bound({name: callee.plain for name, callee in self._callees()})
+        return self._plain({})
+
+    def _plain(self, wraps: dict[str, Wrap]) -> FunctionType:
+        """Return the source as it stands, with something around the calls of some kernels, at any depth."""
+        functions: dict[str, Any] = {name: callee._plain(wraps) for name, callee in self._callees()}
+        return self._bound({name: wraps[name](f) if name in wraps else f for name, f in functions.items()})
+
+    def _over_objects(self, *args: Any) -> Any:
+        wraps = _wraps.get()
+        return self._plain(wraps)(*args) if wraps else self.plain(*args)
 
     @property
     def compiled(self) -> Callable[..., Any]:
@@ -154,6 +178,16 @@ def kernel(source: Callable[..., Any]) -> Kernel:
     """Mark a plain function over arrays, scalars and loops as an algorithm with one source."""
     assert isinstance(source, FunctionType)
     return Kernel(source)
+
+
+@contextmanager
+def wrapped(**wraps: Wrap) -> Iterator[None]:
+    """Within, kernels that run over objects call ``wrap(f)`` for a kernel f of that name: to count or record calls."""
+    token = _wraps.set({**(_wraps.get() or {}), **wraps})
+    try:
+        yield
+    finally:
+        _wraps.reset(token)
 
 
 def extent(count: int) -> Any:
