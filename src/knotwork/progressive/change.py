@@ -1,0 +1,139 @@
+"""Change of basis: inserting a knot, and going from one progressive sequence to any other (§2.2.3 – §2.2.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from knotwork.errors import KnotError, ParameterError
+from knotwork.numbers import Array, whole
+from knotwork.progressive import procedures
+from knotwork.progressive.curve import Curve
+from knotwork.progressive.homogeneous import beside, broken_at, pair
+from knotwork.progressive.procedures import right_edge, triangle
+from knotwork.progressive.sequence import Sequence
+
+#: what changes a basis, by the name of its author
+METHODS: dict[str, Callable[[Array, Array, Array], Array]] = {
+    "boehm": procedures.boehm,
+    "oslo": procedures.oslo,
+    "oslo-original": procedures.oslo_original,
+    "sablonniere": procedures.sablonniere,
+    "sablonniere-optimised": procedures.sablonniere_optimised,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Insertion:
+    """A curve with a knot inserted: n + 1 + times control points over 2n + times knots, the new ones in the middle.
+
+    Unpacks into `left` and `right`, the curve over the first 2n and over the last 2n of the knots.
+    """
+
+    curve: Curve
+    knots: Array
+    points: Array
+
+    @property
+    def control(self) -> Array:
+        """All control points, shape (n + 1 + times, d), without d for a function."""
+        return self.points[:, 0] if self.curve.scalar else self.points
+
+    @property
+    def left(self) -> Curve:
+        """The curve over t_1 … t_n, u …; KnotError if that is not progressive, because u is one of t_1 … t_n."""
+        n = self.curve.degree
+        return self.curve.over(Sequence(self.knots[: 2 * n]), np.array(self.points[: n + 1]))
+
+    @property
+    def right(self) -> Curve:
+        """The curve over … u, t_{n+1} … t_2n; KnotError if that is not progressive, because u is one of them."""
+        n = self.curve.degree
+        return self.curve.over(Sequence(self.knots[len(self.knots) - 2 * n :]), np.array(self.points[-n - 1 :]))
+
+    def __iter__(self) -> Iterator[Curve]:
+        return iter((self.left, self.right))
+
+
+def insert(curve: Curve, u: Any, times: int = 1) -> Insertion:
+    """Insert a knot between the n knots at the left and the n at the right: Boehm's algorithm (§2.2.3).
+
+    Parameters
+    ----------
+    curve : Curve
+    u : number or pair
+        An affine or a homogeneous knot; `DELTA` gives derivatives (§2.3.3).
+    times : int
+        1 … n. The triangle is cut at this level: times · n - times (times - 1) / 2 combinations. With `times` = n this
+        is evaluation.
+
+    Raises
+    ------
+    ParameterError
+        If `times` is not in 1 … n.
+
+    Examples
+    --------
+    >>> from knotwork.progressive import bernstein, Curve
+    >>> left, right = insert(Curve(bernstein(2), [0, 2, 8]), 0.5, times=2)
+    >>> left.control.tolist(), right.control.tolist()
+    ([0.0, 1.0, 3.0], [3.0, 5.0, 8.0])
+    """
+    n = curve.degree
+    if whole(times, "times", 1, ParameterError) > n:
+        raise ParameterError(f"times = {times} given; degree {n} takes a knot at most {n} times")
+    knot = pair(u, "knot", KnotError)
+    P, t, knot = beside(curve.points, curve.knots, knot)
+    new = np.repeat(knot, times, axis=0)
+    T = triangle(P, t, new)
+    above = np.arange(times)
+    points = np.concatenate([T[above, 0], right_edge(T)])
+    return Insertion(curve, np.concatenate([t[:n], new, t[n:]]), points)
+
+
+def change_basis(curve: Curve, sequence: Any, method: str = "auto") -> Curve:
+    """Return the same curve over another progressive sequence of the same degree.
+
+    Parameters
+    ----------
+    curve : Curve
+    sequence : Sequence, or what it takes
+    method : {"auto", "boehm", "oslo", "oslo-original", "sablonniere", "sablonniere-optimised"}
+        "boehm" inserts the knots one at a time, 2n² combinations; "oslo" is Goldman's version with two triangles,
+        n(n + 1); both go through sequences that mix old and new knots, and fail if one of them is not progressive.
+        The others compute all points from the given ones: "oslo-original" with n + 1 triangles, n(n + 1)²/2,
+        "sablonniere" with a tetrahedron, n(n + 1)(n + 5)/6, "sablonniere-optimised" with the part of it that is needed.
+        "auto" takes Oslo, with whichever half first, where it goes, and the optimised Sablonnière elsewhere.
+
+    Raises
+    ------
+    KnotError
+        If the degrees differ, the sequence is not progressive, or a method meets a sequence that is not.
+
+    Examples
+    --------
+    >>> from knotwork.progressive import bernstein, monomial, Curve
+    >>> change_basis(Curve(bernstein(3), [1, 2, 4, 8]), monomial(3)).control.tolist()  # Pascal's triangle, backwards
+    [1.0, 1.0, 1.0, 1.0]
+    """
+    target = sequence if isinstance(sequence, Sequence) else Sequence(sequence)
+    if target.degree != curve.degree:
+        raise KnotError(f"a sequence of degree {target.degree} given; the curve has degree {curve.degree}")
+    if method != "auto" and method not in METHODS:
+        raise ParameterError(f"method {method!r} given; expected 'auto' or one of {', '.join(METHODS)}")
+    P, t, u = beside(curve.points, curve.knots, target.homogeneous)
+    change = _safest(t, u) if method == "auto" else METHODS[method]
+    return curve.over(Sequence.trusted(u), np.ascontiguousarray(change(P, t, u)))
+
+
+def _safest(t: Array, u: Array) -> Callable[[Array, Array, Array], Array]:
+    """Return the cheapest method that goes from t to u without a sequence that is not progressive."""
+    n = len(t) // 2
+    if broken_at(np.concatenate([t[:n], u[n:]])) is None:
+        return procedures.oslo
+    if broken_at(np.concatenate([u[:n], t[n:]])) is None:
+        return procedures.oslo_mirrored
+    return procedures.sablonniere_optimised

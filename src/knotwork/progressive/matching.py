@@ -1,0 +1,111 @@
+"""To what order two curves agree at a knot they share (§2.3.4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from knotwork.errors import KnotError, ParameterError
+from knotwork.numbers import Array, exact
+from knotwork.progressive.curve import Curve
+from knotwork.progressive.homogeneous import alike, crossed, pair, written
+from knotwork.progressive.sequence import Sequence
+
+
+@dataclass(frozen=True)
+class Match:
+    """What two curves of degree n share at a knot.
+
+    `orders` are the orders of derivative that agree there without a gap: 0 … r at an affine knot, which is a joint of
+    smoothness C^r; at a vector-valued knot (n,) or (): there all derivatives are multiples of the highest, so
+    that the curves need not meet anywhere, but go to infinity alike.
+    """
+
+    knot: tuple[Any, Any]
+    orders: tuple[int, ...]
+
+    @property
+    def vector(self) -> bool:
+        """Whether the knot is vector-valued."""
+        return bool(self.knot[1] == 0)
+
+    @property
+    def order(self) -> int:
+        """The highest order of derivative that agrees, with all below it if the knot is affine; -1 for none."""
+        return self.orders[-1] if self.orders else -1
+
+    def __str__(self) -> str:
+        where = written(self.knot)
+        if self.vector:
+            if not self.orders:
+                return f"at {where} not even the highest derivatives agree"
+            return f"at {where} the derivatives of order {self.order} agree: the curves go to infinity alike"
+        if not self.orders:
+            return f"at {where} the curves do not meet"
+        return f"at {where} the values and the derivatives up to order {self.order} agree"
+
+
+def matches(p: Curve, q: Curve, knot: Any = None, tolerance: float = 0) -> Match:
+    """Tell to what order two curves of one degree agree at a knot of both.
+
+    Neighbours, whose knots and control points are those of one spline shifted by m, agree to order n - m at the joint,
+    an affine knot m times between them.
+
+    Parameters
+    ----------
+    p, q : Curve
+    knot : number or pair, optional
+        A knot of both; by default the knot n + 1 of `p`, where its segment ends and that of `q` begins.
+    tolerance : float
+        What the coordinates of derivatives may differ by, absolutely. With 0, floats are compared as the exact numbers
+        they stand for, by exact arithmetic.
+
+    Raises
+    ------
+    KnotError
+        If the degrees differ or the knot is not shared.
+
+    Examples
+    --------
+    >>> from knotwork.progressive import Curve
+    >>> p, q = Curve([0, 1, 2, 3], [5, 1, 4]), Curve([1, 2, 3, 4], [1, 4, 0])
+    >>> print(matches(p, q))
+    at 2.0 the values and the derivatives up to order 1 agree
+    """
+    n = p.degree
+    if q.degree != n or not n:
+        raise KnotError(f"curves of degrees {n} and {q.degree} given; expected equal degrees of at least 1")
+    if p.points.shape[1] != q.points.shape[1]:
+        raise ParameterError(f"points in {p.points.shape[1]} and in {q.points.shape[1]} dimensions given")
+    if not tolerance >= 0:
+        raise ParameterError(f"tolerance {tolerance} given; expected a number of at least 0")
+    at = p.knots[n : n + 1] if knot is None else pair(knot, "knot", KnotError)
+    for curve in (p, q):
+        if not _has(curve, at):
+            raise KnotError(f"{written(at[0])} is not a knot of {curve.sequence!r}; expected one that both curves have")
+    if tolerance == 0:
+        p, q = _exact(p), _exact(q)
+    t, w = at[0]
+    a = 0 if w == 0 else t / w if at.dtype.kind != "f" or tolerance else exact(at, "knot", KnotError)[0]
+    if isinstance(a, np.ndarray):
+        a = a[0] / a[1]
+    near = np.abs(p.derivatives(a) - q.derivatives(a)).reshape(n + 1, -1).max(axis=1) <= tolerance
+    agreeing = n + 1 if near.all() else int(np.argmin(near))
+    orders = range(agreeing) if w != 0 else range(n, n + 1) if near[n] else range(0)
+    return Match((t, w), tuple(orders))
+
+
+def _has(curve: Curve, knot: Array) -> bool:
+    """Tell whether one of the curve's knots is this one, up to a factor."""
+    knots, at = alike(curve.knots, knot)
+    return bool(np.any(crossed(knots, at[0]) == 0))
+
+
+def _exact(curve: Curve) -> Curve:
+    """Return a curve of floats as the exact curve it stands for."""
+    if "c" in (curve.control.dtype.kind, curve.knots.dtype.kind):
+        return curve  # exact complex numbers are not to be had
+    points, t = exact(curve.control, "points", ParameterError), exact(curve.knots, "knots", ParameterError)
+    return Curve.trusted(Sequence.trusted(t), points)

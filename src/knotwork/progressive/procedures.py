@@ -1,0 +1,129 @@
+"""The procedures on arrays: each allocates what its kernel of `scheme` needs and calls it, in one arithmetic.
+
+Points are (n + 1, d), knots t and u are (2n, 2) homogeneous pairs; what is given is known to fit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from knotwork.errors import KnotError
+from knotwork.kernel import extent
+from knotwork.numbers import Array
+from knotwork.progressive import scheme
+from knotwork.progressive.homogeneous import beside, crossed, written
+
+
+def repeated(u: Array, n: int) -> Array:
+    """Return each pair of (m, 2) as n equal blossom arguments, shape (m, n, 2)."""
+    return np.ascontiguousarray(np.broadcast_to(u[:, None, :], (len(u), n, 2)))
+
+
+def blossoms(points: Array, t: Array, arguments: Array) -> Array:
+    """Return the blossom (m, d) at rows of arguments (m, n, 2)."""
+    P, t, U = beside(points, t, arguments)
+    out = np.empty((len(U), P.shape[1]), P.dtype)
+    scheme.over(t, scheme.blossoms)(out, P, t, U, np.empty_like(P), extent(P.shape[1]))
+    return out
+
+
+def triangle(points: Array, t: Array, arguments: Array) -> Array:
+    """Return the triangle T[r, q] of up to n arguments (r, 2); its rows beyond n - r hold nothing."""
+    P, t, U = beside(points, t, arguments)
+    T = np.empty((len(U) + 1, *P.shape), P.dtype)
+    T[0] = P
+    scheme.over(t, scheme.triangle)(T, t, U, extent(P.shape[1]))
+    return T
+
+
+def left_edge(T: Array) -> Array:
+    """Return T[0, 0], T[1, 0], …, T[r, 0] … T[r, n - r]: what inserting at the right of the first n knots gives."""
+    r, n = len(T) - 1, T.shape[1] - 1
+    return np.concatenate([T[:r, 0], T[r, : n - r + 1]])
+
+
+def right_edge(T: Array) -> Array:
+    """Return T[r, 0] … T[r, n - r], T[r - 1, n - r + 1], …, T[0, n]: the same at the left of the last n knots."""
+    r, n = len(T) - 1, T.shape[1] - 1
+    above = np.arange(r - 1, -1, -1)
+    return np.concatenate([T[r, : n - r + 1], T[above, n - above]])
+
+
+# ---- change of basis: control points over t become control points over u ------------------------------------------
+
+
+def boehm(points: Array, t: Array, u: Array) -> Array:
+    """Insert the new knots one at a time: 2n² combinations (§2.2.3)."""
+    P, t, u = beside(points, t, u)
+    n = len(t) // 2
+    a, b = np.concatenate([t[:n], u[:n]]), np.concatenate([u[n:], t[n:]])
+    for k in range(n):
+        _require_distinct("boehm", a[:n], b[n - k : 2 * n - k])
+    for k in range(n):
+        _require_distinct("boehm", a[k : n + k], b[:n])
+    T = np.empty((2 * n + 1, *P.shape), P.dtype)
+    T[0] = P
+    scheme.over(t, scheme.boehm)(T, a, b, extent(P.shape[1]))
+    new: Array = T[2 * n]
+    return new
+
+
+def oslo(points: Array, t: Array, u: Array) -> Array:
+    """Go over t_1 … t_n u_{n+1} … u_2n: Goldman's two triangles, n(n + 1) combinations (§2.2.4)."""
+    n = len(t) // 2
+    _, t, u = beside(points, t, u)
+    between = np.concatenate([t[:n], u[n:]])
+    for j in range(n):
+        _require_distinct("oslo", between[j:n], between[n + j : n + j + 1])
+    first = triangle(points, t, u[n:])
+    return right_edge(triangle(left_edge(first), between, u[n - 1 :: -1] if n else u))
+
+
+def oslo_mirrored(points: Array, t: Array, u: Array) -> Array:
+    """Go over u_1 … u_n t_{n+1} … t_2n instead: Goldman's two triangles, the other one first."""
+    return oslo(points[::-1], t[::-1], u[::-1])[::-1]
+
+
+def oslo_original(points: Array, t: Array, u: Array) -> Array:
+    """Run the blossoming algorithm for each new point: n + 1 triangles, n(n + 1)²/2 combinations (§2.2.4)."""
+    n = len(t) // 2
+    if not n:
+        return points
+    windows = np.arange(n + 1)[:, None] + np.arange(n)
+    return blossoms(points, t, u[windows])
+
+
+def sablonniere(points: Array, t: Array, u: Array) -> Array:
+    """Compute one tetrahedron: n(n + 1)(n + 5)/6 combinations, and no sequence on the way (§2.2.5)."""
+    P, t, u = beside(points, t, u)
+    n = len(t) // 2
+    T = np.empty((n + 1, *P.shape), P.dtype)
+    T[0] = P
+    Q = np.empty_like(P)
+    lower = np.ascontiguousarray(u[:n][::-1])
+    scheme.over(t, scheme.sablonniere)(Q, T, t, u[n:], lower, np.empty_like(P), extent(P.shape[1]))
+    return Q
+
+
+def sablonniere_optimised(points: Array, t: Array, u: Array) -> Array:
+    """Compute those rows of the tetrahedron alone that serve the most new points (§2.2.5)."""
+    P, t, u = beside(points, t, u)
+    n = len(t) // 2
+    depth = n + 2
+    R = np.empty((depth, *P.shape), P.dtype)
+    R[0] = P
+    Q = np.empty_like(P)
+    first, last = np.empty(depth, np.intp), np.empty(depth, np.intp)
+    scheme.over(t, scheme.sablonniere_optimised)(Q, t, u, R, first, last, extent(P.shape[1]))
+    return Q
+
+
+def _require_distinct(method: str, a: Array, b: Array) -> None:
+    """Raise if a combination on the way would divide by zero."""
+    same = np.flatnonzero(crossed(b, a) == 0)
+    if len(same):
+        x, y = written(a[same[0]]), written(np.broadcast_to(b, a.shape)[same[0]])
+        raise KnotError(
+            f"method '{method}' cannot change the basis: in a sequence on the way it meets knots {x} and {y}, which "
+            "must differ; 'sablonniere' and 'auto' need no such sequence"
+        )
