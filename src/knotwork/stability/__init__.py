@@ -1,7 +1,19 @@
 """How stable knot insertion is: condition numbers, the splines that attain them, bounds on rounding (chapters 5, 6)."""
 
 from knotwork.stability.condition import condition, extremal
+from knotwork.stability.conversion import ConversionBound, conversion_bound
 from knotwork.stability.rounding import relative_error_bound
 from knotwork.stability.worst import Worst, basis_condition, kappa, uniform, worst
 
-__all__ = ["Worst", "basis_condition", "condition", "extremal", "kappa", "relative_error_bound", "uniform", "worst"]
+__all__ = [
+    "ConversionBound",
+    "Worst",
+    "basis_condition",
+    "condition",
+    "conversion_bound",
+    "extremal",
+    "kappa",
+    "relative_error_bound",
+    "uniform",
+    "worst",
+]

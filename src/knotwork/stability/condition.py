@@ -91,7 +91,10 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
     if space.periodic:
         raise KnotError(f"{space!r} is periodic; condition numbers are those of spaces with ends: clamp it first")
     if isinstance(refined, SplineSpace):
-        return Spline(space, discrete_chebyshev(insertion_matrix(space, refined)))
+        A = insertion_matrix(space, refined)
+        x, y = space.nodes, refined.nodes
+        after = np.clip(np.searchsorted(y, x), 1, len(y) - 1)
+        return Spline(space, discrete_chebyshev(A, after - (x - y[after - 1] < y[after] - x)))
     _, new = space.refinement(refined)
     if len(new) != 1:
         raise KnotError(f"{len(new)} knots given; expected one, or a SplineSpace that refines this one")
@@ -116,23 +119,36 @@ def heights(window: list[Any], s: Any) -> list[Any]:
     return list(map(min, u, reversed(v)))
 
 
-def discrete_chebyshev(A: Banded) -> Array:
-    """Return the c with values A·c that are ±1 by turns in as many rows as A has columns, and nowhere larger."""
+def discrete_chebyshev(A: Banded, near: Array) -> Array:
+    """Return the c with values A·c that are ±1 by turns in as many rows as A has columns, and nowhere larger.
+
+    The search starts from rows about `near`, one a column, increasing or nearly so.
+    """
     n = A.columns
     i, place = np.nonzero(A.entries)
     column = A.first[i] + place
     top, bottom = np.full(n, len(A.first)), np.zeros(n, int)
     np.minimum.at(top, column, i)
     np.maximum.at(bottom, column, i)
-    rows = (top + bottom) // 2
+    # a matrix of rows whose diagonal is positive is not singular
+    rows = np.clip(np.maximum.accumulate(near - np.arange(n)) + np.arange(n), top, bottom)
     signs = A.entries.flat[0] * 0 + (-1) ** np.arange(n)
     c = solve(Banded(A.first[rows], A.entries[rows], n), signs)
     while True:
-        b = A @ c
-        ends = [-1, *rows.tolist(), len(b)]
-        # the run of equal sign about a row lies between its neighbours
-        rows = np.array([ends[l] + 1 + np.argmax(signs[l] * b[ends[l] + 1 : ends[l + 2]]) for l in range(n)])
+        rows = _largest(signs, A @ c, rows, top, bottom)
         smaller = solve(Banded(A.first[rows], A.entries[rows], n), signs)
         if not abs(smaller).sum() < abs(c).sum():
             return c
         c = smaller
+
+
+def _largest(signs: Array, b: Array, rows: Array, top: Array, bottom: Array) -> Array:
+    """Return, for each row, where b is largest in the run of its sign, which lies between the neighbouring rows."""
+    found = rows.copy()
+    before = -1
+    for l, row in enumerate(rows):
+        after = rows[l + 1] if l + 1 < len(rows) else len(b)
+        lo, hi = max(before + 1, top[l]), min(after, bottom[l] + 1)
+        found[l] = lo + np.argmax(signs[l] * b[lo:hi])
+        before = max(row, found[l])
+    return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from fractions import Fraction
 from typing import Any, Self
@@ -124,7 +125,7 @@ def kappa(space: SplineSpace) -> float:
     a, b = space.domain
     jumps = [] if space.periodic else [x for x in space.breaks.tolist() if a < x < b and space.multiplicity(x) == n + 1]
     cuts = [0, *np.searchsorted(t, np.array(jumps, t.dtype), "left").tolist(), space.dimension]
-    parts = [SplineSpace(n, t[lo : hi + n + 1]) for lo, hi in zip(cuts, cuts[1:])] if jumps else [space]
+    parts = [SplineSpace(n, t[lo : hi + n + 1]) for lo, hi in itertools.pairwise(cuts)] if jumps else [space]
     return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in parts)
 
 
