@@ -153,6 +153,11 @@ def test_plain_and_compiled_agree_on_removal(both, dtype):
     kw.remove(net, net.spaces[0].breaks[1:-1], tolerance=1.0)
 
 
+def test_plain_and_compiled_agree_on_elimination(both):
+    space = kw.SplineSpace.clamped(3, 7)
+    kw.stability.condition(space, space.with_knots([0.1, 0.5, 0.7]))
+
+
 def test_every_kernel_is_tried(both):
     """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
     for module in pkgutil.walk_packages(kw.__path__, "knotwork."):
@@ -161,6 +166,7 @@ def test_every_kernel_is_tried(both):
     test_plain_and_compiled_agree_on_curves(both, np.float64)
     test_plain_and_compiled_agree_on_surfaces(both)
     test_plain_and_compiled_agree_on_removal(both, np.float64)
+    test_plain_and_compiled_agree_on_elimination(both)
     reached = set(both)
     while below := {callee for caller in reached for _, callee in caller._callees()} - reached:
         reached |= below
