@@ -16,22 +16,26 @@ _set = object.__setattr__
 
 
 @kernel
+def weighted_sum(out, a, i, P, s, w, D):  # type: ignore[no-untyped-def]
+    """out[a, i] = Σ w[r] · P[a, s + r] for a tuple of weights."""
+    for c in range(len(D)):
+        total = w[0] * P[a, s, c]
+        for r in range(1, len(w)):
+            total = total + w[r] * P[a, s + r, c]
+        out[a, i, c] = total
+
+
+@kernel
 def combination(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
     """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v; one vector loop for the short sums."""
     if v == 0:
-        for c in range(len(D)):
-            out[a, i, c] = E[j, 0] * P[a, s, c]
+        weighted_sum(out, a, i, P, s, (E[j, 0],), D)
     elif v == 1:
-        for c in range(len(D)):
-            out[a, i, c] = E[j, 0] * P[a, s, c] + E[j, 1] * P[a, s + 1, c]
+        weighted_sum(out, a, i, P, s, (E[j, 0], E[j, 1]), D)
     elif v == 2:
-        for c in range(len(D)):
-            out[a, i, c] = E[j, 0] * P[a, s, c] + E[j, 1] * P[a, s + 1, c] + E[j, 2] * P[a, s + 2, c]
+        weighted_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2]), D)
     elif v == 3:
-        for c in range(len(D)):
-            out[a, i, c] = (
-                E[j, 0] * P[a, s, c] + E[j, 1] * P[a, s + 1, c] + E[j, 2] * P[a, s + 2, c] + E[j, 3] * P[a, s + 3, c]
-            )
+        weighted_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2], E[j, 3]), D)
     else:
         for c in range(len(D)):
             total = E[j, 0] * P[a, s, c]

@@ -87,6 +87,14 @@ def old_is_next(U, j, W, k, stop):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def advance(U, j, W, k, stop):  # type: ignore[no-untyped-def]
+    """Return how many of U and of W are merged when one more knot is."""
+    if old_is_next(U, j, W, k, stop):
+        return j + 1, k
+    return j, k + 1
+
+
+@kernel
 def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
     """Return how many of the first `count` merged knots are old; in the order of `old_is_next`."""
     lo, hi = max(0, count - len(W)), min(count, len(U))

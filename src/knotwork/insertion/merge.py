@@ -8,14 +8,46 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import combination
+from knotwork.banded import combination, weighted_sum
 from knotwork.kernel import extent, kernel
-from knotwork.knots import old_among, old_is_next
+from knotwork.knots import advance, old_among
 from knotwork.numbers import Array, empty
 from knotwork.parallel import in_parts
 
-#: rows whose weights are computed before they are applied
+#: rows whose weights are computed before they are applied to all curves of a net
 BLOCK = 64
+
+
+@kernel
+def one_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
+    """Return the weights of row i where one argument is new."""
+    b = (W[lw] - U[lu - 1]) / (U[hu] - U[lu - 1])
+    return 1 - b, b
+
+
+@kernel
+def two_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
+    """Return the weights of row i where two arguments are new."""
+    x, y = W[lw], W[lw + 1]
+    b = (x - U[lu - 1]) / (U[hu] - U[lu - 1])
+    c = (y - U[lu - 2]) / (U[hu] - U[lu - 2])
+    d = (y - U[lu - 1]) / (U[hu + 1] - U[lu - 1])
+    a = 1 - b
+    return a * (1 - c), a * c + b * (1 - d), b * d
+
+
+@kernel
+def three_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
+    """Return the weights of row i where three arguments are new."""
+    x, y, z = W[lw], W[lw + 1], W[lw + 2]
+    L1, L2, L3 = U[lu - 1], U[lu - 2], U[lu - 3]
+    R1, R2, R3 = U[hu], U[hu + 1], U[hu + 2]
+    b = (x - L1) / (R1 - L1)
+    c, d = (y - L2) / (R1 - L2), (y - L1) / (R2 - L1)
+    e, f, g = (z - L3) / (R1 - L3), (z - L2) / (R2 - L2), (z - L1) / (R3 - L1)
+    a = 1 - b
+    p, q, r = a * (1 - c), a * c + b * (1 - d), b * d
+    return p * (1 - e), p * e + q * (1 - f), q * f + r * (1 - g), r * g
 
 
 @kernel
@@ -27,31 +59,11 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
     if v == 0:
         E[i, 0] = U[hu] - U[hu] + 1
     elif v == 1:
-        b = (W[lw] - U[lu - 1]) / (U[hu] - U[lu - 1])
-        E[i, 0] = 1 - b
-        E[i, 1] = b
+        E[i, 0], E[i, 1] = one_new(U, lu, hu, W, lw)
     elif v == 2:
-        x, y = W[lw], W[lw + 1]
-        b = (x - U[lu - 1]) / (U[hu] - U[lu - 1])
-        c = (y - U[lu - 2]) / (U[hu] - U[lu - 2])
-        d = (y - U[lu - 1]) / (U[hu + 1] - U[lu - 1])
-        a = 1 - b
-        E[i, 0] = a * (1 - c)
-        E[i, 1] = a * c + b * (1 - d)
-        E[i, 2] = b * d
+        E[i, 0], E[i, 1], E[i, 2] = two_new(U, lu, hu, W, lw)
     elif v == 3:
-        x, y, z = W[lw], W[lw + 1], W[lw + 2]
-        L1, L2, L3 = U[lu - 1], U[lu - 2], U[lu - 3]
-        R1, R2, R3 = U[hu], U[hu + 1], U[hu + 2]
-        b = (x - L1) / (R1 - L1)
-        c, d = (y - L2) / (R1 - L2), (y - L1) / (R2 - L1)
-        e, f, g = (z - L3) / (R1 - L3), (z - L2) / (R2 - L2), (z - L1) / (R3 - L1)
-        a = 1 - b
-        p, q, r = a * (1 - c), a * c + b * (1 - d), b * d
-        E[i, 0] = p * (1 - e)
-        E[i, 1] = p * e + q * (1 - f)
-        E[i, 2] = q * f + r * (1 - g)
-        E[i, 3] = r * g
+        E[i, 0], E[i, 1], E[i, 2], E[i, 3] = three_new(U, lu, hu, W, lw)
     else:
         zero = U[hu] - U[hu]
         E[i, 0] = zero + 1
@@ -66,33 +78,55 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
 
 
 @kernel
-def refine(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-untyped-def]
-    """out[a, i] = refined control point lo + i, a block of rows of the insertion matrix at a time.
+def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):  # type: ignore[no-untyped-def]
+    """out[0, i] = blossom of the curve P[0] at U[lu … hu-1] and W[lw … lw+v-1]; few weights stay in registers."""
+    s = lu - 1 - v
+    if v == 0:
+        for c in range(len(D)):
+            out[0, i, c] = P[0, s, c]
+    elif v == 1:
+        weighted_sum(out, 0, i, P, s, one_new(U, lu, hu, W, lw), D)
+    elif v == 2:
+        weighted_sum(out, 0, i, P, s, two_new(U, lu, hu, W, lw), D)
+    elif v == 3:
+        weighted_sum(out, 0, i, P, s, three_new(U, lu, hu, W, lw), D)
+    else:
+        discrete_bsplines(U, lu, hu, W, lw, v, E, 0)
+        combination(out, 0, i, P, s, E, 0, v, D)
 
-    Of each row of a block, `start` is the first column, `new` the number of new knots among its arguments, and E has
-    the weights.
-    """
+
+@kernel
+def refine_curve(U, W, stop, n, lo, P, out, E, D):  # type: ignore[no-untyped-def]
+    """out[0, i] = refined control point lo + i of the curve P[0]; E has room for a row of weights."""
     lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
     lw, hw = lo - lu, lo + n - hu
+    for i in range(out.shape[1]):
+        lu, lw = advance(U, lu, W, lw, stop)
+        hu, hw = advance(U, hu, W, hw, stop)
+        control_point(U, lu, hu, W, lw, hw - lw, P, out, i, E, D)
+
+
+@kernel
+def matrix_rows(U, W, stop, n, lo, count, start, new, E):  # type: ignore[no-untyped-def]
+    """E[i] = row lo + i of the insertion matrix from column start[i] on, new[i] of its arguments being new knots."""
+    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
+    lw, hw = lo - lu, lo + n - hu
+    for i in range(count):
+        lu, lw = advance(U, lu, W, lw, stop)
+        hu, hw = advance(U, hu, W, hw, stop)
+        start[i], new[i] = lu - 1 - (hw - lw), hw - lw
+        discrete_bsplines(U, lu, hu, W, lw, hw - lw, E, i)
+
+
+@kernel
+def refine_net(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-untyped-def]
+    """out[a, i] = refined control point lo + i of each curve P[a], as many rows of the matrix at a time as fit E."""
     for top in range(0, out.shape[1], len(start)):
         count = min(len(start), out.shape[1] - top)
-        for i in range(count):
-            if old_is_next(U, lu, W, lw, stop):
-                lu += 1
-            else:
-                lw += 1
-            if old_is_next(U, hu, W, hw, stop):
-                hu += 1
-            else:
-                hw += 1
-            start[i], new[i] = lu - 1 - (hw - lw), hw - lw
-            discrete_bsplines(U, lu, hu, W, lw, hw - lw, E, i)
-            if len(P) == 1:  # at once: the two branches on the number of new knots are then predicted as one
-                combination(out, 0, top + i, P, start[i], E, i, new[i], D)
-        if len(P) > 1:
-            for a in range(len(P)):
-                for i in range(count):
-                    combination(out, a, top + i, P, start[i], E, i, new[i], D)
+        matrix_rows(U, W, stop, n, lo + top, count, start, new, E)
+        for a in range(len(P)):
+            for i in range(count):
+                combination(out, a, top + i, P, start[i], E, i, new[i], D)
 
 
 def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> Array:
@@ -101,21 +135,26 @@ def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int)
     out = empty((A, rows, B), P.dtype)
     D = extent(B)
 
-    def part(a: int, b: int, first: int, last: int) -> None:
-        block = max(1, min(BLOCK, last - first))
-        start, new, E = np.empty(block, np.intp), np.empty(block, np.intp), np.empty((block, n + 1), U.dtype)
-        refine(U, W, stop, n, lo + first, P[a:b], out[a:b, first:last], start, new, E, D)
+    def curve(first: int, last: int) -> None:
+        refine_curve(U, W, stop, n, lo + first, P, out[:, first:last], np.empty((1, n + 1), U.dtype), D)
+
+    def net(a: int, b: int) -> None:
+        start, new, E = _room(min(BLOCK, rows), n, U)
+        refine_net(U, W, stop, n, lo, P[a:b], out[a:b], start, new, E, D)
 
     if A == 1:  # contiguous parts either way
-        in_parts(lambda first, last: part(0, 1, first, last), rows, out.size)
+        in_parts(curve, rows, out.size)
     else:
-        in_parts(lambda a, b: part(a, b, 0, rows), A, out.size)
+        in_parts(net, A, out.size)
     return out
 
 
 def rows_of_matrix(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[Array, Array, Array]:
-    """Return first columns, numbers of new knots and weights (rows, n + 1): the matrix is one block, without points."""
-    start, new = np.empty(rows, np.intp), np.empty(rows, np.intp)
-    E = empty((rows, n + 1), U.dtype)
-    refine(U, W, stop, n, lo, np.empty((0, 0, 1)), np.empty((0, rows, 1)), start, new, E, extent(1))
+    """Return first columns, numbers of new knots and weights (rows, n + 1)."""
+    start, new, E = _room(rows, n, U)
+    matrix_rows(U, W, stop, n, lo, rows, start, new, E)
     return start, new, E
+
+
+def _room(rows: int, n: int, U: Array) -> tuple[Array, Array, Array]:
+    return np.empty(rows, np.intp), np.empty(rows, np.intp), empty((rows, n + 1), U.dtype)
