@@ -1,4 +1,4 @@
-"""The examples in docstrings and in the README run and give what they say."""
+"""The examples in docstrings, in the README and in the pages of docs/ run and give what they say."""
 
 from __future__ import annotations
 
@@ -16,7 +16,15 @@ import knotwork as kw
 
 ROOT = Path(__file__).parent.parent
 MODULES = ["knotwork", *(m.name for m in pkgutil.walk_packages(kw.__path__, "knotwork.") if "__main__" not in m.name)]
-BLOCKS = re.findall(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(), re.DOTALL | re.MULTILINE)
+OPTIONS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+
+
+def blocks(page):
+    """Return the Python blocks of a page."""
+    return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+PAGES = [page for page in sorted((ROOT / "docs").rglob("*.md")) if blocks(page)]
 
 
 def examples(name):
@@ -31,7 +39,7 @@ def test_the_examples_of_a_docstring(test, tmp_path, monkeypatch):
         pytest.importorskip("matplotlib").use("agg")
     monkeypatch.chdir(tmp_path)
     told = []
-    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
+    runner = doctest.DocTestRunner(optionflags=OPTIONS)
     assert runner.run(test, out=told.append).failed == 0, "".join(told)
 
 
@@ -40,16 +48,47 @@ def test_the_main_names_have_examples():
     assert found >= {"SplineSpace", "Spline", "curve", "insert", "remove", "reduce", "to_bezier", "elevate"}
 
 
+def run(block, name, names):
+    """Run a block of a page, and check what it shows if it is a session with `>>>`; names defined are kept."""
+    if not block.startswith(">>>"):
+        exec(compile(block, name, "exec"), names)
+        return
+    told = []
+    test = doctest.DocTestParser().get_doctest(block, names, name, name, 0)
+    assert doctest.DocTestRunner(optionflags=OPTIONS).run(test, out=told.append, clear_globs=False).failed == 0, told
+    names.update(test.globs)
+
+
 def test_the_python_of_the_readme(tmp_path, monkeypatch):
     """All blocks one after another, as a reader would paste them."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
-    assert len(BLOCKS) >= 2
     names = {}
-    for k, block in enumerate(BLOCKS):
-        exec(compile(block, f"README.md, block {k}", "exec"), names)
+    for k, block in enumerate(blocks(ROOT / "README.md")):
+        run(block, f"README.md, block {k}", names)
         if k == 0:
             check_the_first_block(names, tmp_path)
+    assert k >= 1
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT / "docs").as_posix())
+def test_the_python_of_a_page(page, tmp_path, monkeypatch):
+    """All blocks one after another; a page says what is true by `assert` and by sessions."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    whole = "\n".join(blocks(page))
+    assert "assert" in whole or ">>>" in whole
+    names = {}
+    for k, block in enumerate(blocks(page)):
+        run(block, f"{page.name}, block {k}", names)
+
+
+def test_the_pictures_of_the_pages_are_there():
+    """Each link to a file of the house leads to one."""
+    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")]:
+        for link in re.findall(r"\]\(([^)#]+)[^)]*\)", re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)):
+            if "://" not in link:
+                assert (page.parent / link).exists(), f"{page.relative_to(ROOT)} links to {link}"
 
 
 def check_the_first_block(names, place):
