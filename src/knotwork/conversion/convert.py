@@ -180,7 +180,13 @@ def _by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
     t, zero = finer.unrolled
     k, rows = finer.order, finer.dimension
     weight = t[zero + k : zero + k + rows] - t[zero : zero + rows]
-    return _solved(spline, axis, target, c, lambda y: least_squares(A, weight, y))
+
+    def solution(y: Array) -> Array:
+        b = least_squares(A, weight, y)
+        # rotations of many rows add up their rounding: what they leave is fitted once more
+        return b if b.dtype == object else b + least_squares(A, weight, y - A.apply(b, 0))
+
+    return _solved(spline, axis, target, c, solution)
 
 
 def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
