@@ -82,7 +82,7 @@ def test_every_command_has_help_with_an_example(run):
 
 
 def test_the_face_of_the_command(run):
-    assert set(main.commands) == {"info", "insert", "remove", "reduce", "bezier", "convert", "plot"}
+    assert set(main.commands) == {"info", "insert", "remove", "reduce", "bezier", "convert", "convert-space", "plot"}
 
 
 def test_version_is_that_of_the_package(run):

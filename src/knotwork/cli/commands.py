@@ -202,6 +202,60 @@ def bezier(file: Path, output: Path, as_json: bool) -> None:
     _change(file, output, (), as_json, lambda spline: (_in_bezier_form(spline), 0.0))
 
 
+@main.command("convert-space", short_help="Convert to other knots or another degree.")
+@click.argument("file", type=FILE)
+@click.option("-k", "--knots", type=terminal.knots, help="All knots of the new space, as in 0,0,0,0.5,1,1,1.")
+@click.option("--like", type=FILE, help="Take degree and knots of the first spline of this file instead.")
+@click.option("-d", "--degree", type=click.IntRange(0, 25), help="Degree of the new space.  [default: as it is]")
+@click.option(
+    "--how",
+    type=click.Choice(["auto", "oslo", "interpolation", "least-squares"]),
+    default="auto",
+    help="[default: auto]",
+)
+@axis_option
+@only
+@maybe_output
+@as_json
+def convert_space(
+    file: Path,
+    knots: list[float] | None,
+    like: Path | None,
+    degree: int | None,
+    how: str,
+    axis: int,
+    only: Sequence[int],
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Convert the splines of FILE to another spline space over the same domain.
+
+    Where the new space holds a spline, it stays as it is; where not, the bound in the report is proven: no point is
+    farther, in any coordinate, from where it was.
+
+    \b
+    Examples:
+      knotwork convert-space curve.json -k 0,0,0,0,0.5,1,1,1,1 -o other.json
+      knotwork convert-space curve.json --like other.json --how interpolation -o same.json
+    """
+    if (knots is None) == (like is None):
+        raise click.UsageError("expected either --knots or --like")
+    if like and degree is not None:
+        raise click.UsageError(f"--degree: {like} gives the degree")
+
+    def change(spline: kw.Spline) -> tuple[kw.Spline, float, dict[str, Any]]:
+        given = spline.spaces[spline.axis(axis)]
+        if like:
+            model = kw.read(like)[0]
+            target = model.spaces[model.axis(axis)]
+        else:
+            target = kw.SplineSpace(given.degree if degree is None else degree, knots, periodic=given.periodic)
+        found = kw.convert(spline, target, axis=axis, how=how)
+        return found.spline, float(found.bound), {"exact": found.exact, "how": found.how}
+
+    _change(file, output, only, as_json, change)
+
+
 @main.command(short_help="Convert between file formats.")
 @click.argument("files", type=FILE, nargs=-1, required=True)
 @click.option("--accuracy", type=float, help="Largest error, in the units of the points, if the format is not exact.")
@@ -267,13 +321,14 @@ def _change(
     output: Path | None,
     only: Sequence[int],
     as_json: bool,
-    change: Callable[..., tuple[kw.Spline, float]],
+    change: Callable[..., tuple[Any, ...]],
     tolerance: Tolerance | None = None,
     working: str | None = None,
 ) -> None:
     """Read, change each spline (or only some), write, report.
 
-    `change` takes a spline, the tolerance if there is one, and a function to report progress to if it is `working`.
+    `change` takes a spline, the tolerance if there is one, and a function to report progress to if it is `working`; it
+    returns the spline changed, the bound, and perhaps more to report.
     """
     if output:
         _require_writable(output)
@@ -291,10 +346,11 @@ def _change(
             start = time.perf_counter()
             tell = [lambda part, size=size: progress.update(part * size)] if working else []
             try:
-                changed[i], bound = change(splines[i], *allowed, *tell)
+                changed[i], bound, *more = change(splines[i], *allowed, *tell)
             except KnotworkError as exc:
                 raise Failure(f"{file}: spline {i}: {exc}") from exc
-            rows.append(_row(i, splines[i], changed[i], bound, time.perf_counter() - start))
+            row = _row(i, splines[i], changed[i], bound, time.perf_counter() - start)
+            rows.append({**row, **dict(*more)})
             progress.finish(size)
     finally:
         progress.close()
@@ -307,6 +363,8 @@ def _change(
         return
     limit = f", tolerance {allowed[0]:.6g}" if allowed else ""
     click.echo(f"{file}: {report.counted(len(rows), 'spline')}{limit}\n\n{report.comparison(rows)}\n")
+    if rows and "how" in rows[0]:
+        click.echo(report.conversions(rows) + "\n")
     click.echo(f"written to {output}{_error_of(written.bound)}" if written else "nothing written (no --output)")
 
 

@@ -104,6 +104,12 @@ def comparison(rows: Sequence[dict[str, Any]]) -> str:
     return table(">>>>>>>>", ["#", "degree", "points", "→ after", "pieces", "→ after", "bound", "time"], cells, total)
 
 
+def conversions(rows: Sequence[dict[str, Any]]) -> str:
+    """Return how many splines were converted in which way, and whether exactly."""
+    kinds = Counter((r["how"], "exact" if r["exact"] else "within the bound") for r in rows)
+    return "; ".join(f"{counted(n, 'spline')} by {how}, {exactly}" for (how, exactly), n in sorted(kinds.items()))
+
+
 def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
     counts = [sum(math.prod(r[what][i]) for r in rows) for what in ("points", "pieces") for i in (0, 1)]
     degrees = sorted({_by(r["degree"]) for r in rows})
