@@ -2,17 +2,17 @@
 
 import itertools
 import math
-from fractions import Fraction as F
+from fractions import Fraction
 
 import numpy as np
-import oracle
 import pytest
-import strategies
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 import knotwork as kw
+import oracle
+import strategies
 from knotwork.errors import KnotError
 from knotwork.stability import condition, extremal, kappa, uniform
 
@@ -58,13 +58,13 @@ def one_knot(draw):
 # ---- one knot -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("s", [F(0), F(1, 7), F(1, 2), F(2, 3), F(1)])
+@pytest.mark.parametrize("s", [Fraction(0), Fraction(1, 7), Fraction(1, 2), Fraction(2, 3), Fraction(1)])
 def test_the_quadratic_case_of_uniform_knots(s):
     u, v = 1 + 2 * (1 - s) / (1 + s), 1 + 2 * s / (2 - s)
     assert uniform(3, s) == min(u, v)
 
 
-@pytest.mark.parametrize("s", [F(0), F(1, 7), F(1, 2), F(2, 3), F(1)])
+@pytest.mark.parametrize("s", [Fraction(0), Fraction(1, 7), Fraction(1, 2), Fraction(2, 3), Fraction(1)])
 def test_the_cubic_case_of_uniform_knots(s):
     """c_1 = min(u, v) at p = 1 and p = 2, from the definition (6.13) with x = (s+2)/(1-s), (s+1)/(2-s), s/(3-s)."""
     x1, x2, x3 = (s + 2, 1 - s), (s + 1, 2 - s), (s, 3 - s)
@@ -80,7 +80,7 @@ def test_the_cubic_case_of_uniform_knots(s):
 def test_of_bernstein_knots_it_is_the_polynomial_in_the_ratio(m):
     """g_k(p, x) = min(q(p, 1/x), q(k-1-p, x)), x = s/(1-s): Proposition 6.5.2."""
     k = m + 1
-    for s in (F(1, 3), F(1, 2), F(5, 7)):
+    for s in (Fraction(1, 3), Fraction(1, 2), Fraction(5, 7)):
         x = s / (1 - s)
 
         def q(p, y):
@@ -132,7 +132,7 @@ def test_no_other_rows_determine_the_coefficients_better(given):
     assume(math.comb(refined.dimension, space.dimension) <= 150)
     A = kw.insertion_matrix(space, refined).toarray()
     n = space.dimension
-    signs = [F((-1) ** i) for i in range(n)]
+    signs = [Fraction((-1) ** i) for i in range(n)]
     solutions = [solved(A[list(rows)].tolist(), signs) for rows in itertools.combinations(range(len(A)), n)]
     least = min(max(map(abs, c)) for c in solutions if c)
     assert condition(space, refined) == least
@@ -151,7 +151,7 @@ def test_it_is_the_optimum_of_a_linear_program(given):
 def test_floats_agree_with_fractions(given):
     space, refined = given
     exactly = condition(space.in_exact_arithmetic(), refined.in_exact_arithmetic())
-    assert isinstance(exactly, F)
+    assert isinstance(exactly, Fraction)
     assert condition(space, refined) == pytest.approx(float(exactly), rel=1e-12)
 
 
@@ -221,5 +221,5 @@ def test_what_is_no_refinement(refined, message):
 
 
 def test_periodic_spaces_have_none():
-    with pytest.raises(KnotError, match="is periodic; .* clamp it first"):
+    with pytest.raises(KnotError, match=r"is periodic; .* clamp it first"):
         condition(kw.SplineSpace.uniform(2, 5, periodic=True), 0.1)

@@ -1,0 +1,125 @@
+"""The bound on rounding holds against exact arithmetic, for every kernel of insertion and any spacing of knots."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import knotwork as kw
+import oracle
+from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.stability import condition, extremal, relative_error_bound
+
+UNIT = 2.0**-53
+
+
+def relative_error(spline, refined, knots):
+    """Return ‖b̂ - b‖/‖b‖ of what `insert` computes, b in Fractions."""
+    computed = kw.insert(spline, knots)
+    assert computed.spaces == (refined,)
+    parts = (np.real, np.imag) if spline.coefficients.dtype.kind == "c" else (np.asarray,)
+    true = [
+        kw.insert(kw.Spline(spline.space, oracle.fractions(part(spline.coefficients))), knots).coefficients
+        for part in parts
+    ]
+    squares = sum((oracle.fractions(part(computed.coefficients)) - b) ** 2 for part, b in zip(parts, true, strict=True))
+    return math.sqrt(squares.max() / sum(b**2 for b in true).max())
+
+
+def cases(seed, count):
+    """Yield spaces, refinements and new knots: evenly and very unevenly spaced, knots inserted next to others."""
+    rng = np.random.default_rng(seed)
+    for trial in range(count):
+        n, pieces = int(rng.integers(0, 7)), int(rng.integers(1, 6))
+        x = np.cumsum(2.0 ** rng.integers(-45, 1, pieces) if trial % 2 else rng.random(pieces) + 0.01)
+        space = kw.SplineSpace(n, np.concatenate([np.zeros(n + 1), x[:-1], np.full(n + 1, x[-1])]))
+        count = int(rng.integers(1, 7))
+        if trial % 3:
+            new = rng.random(count) * x[-1]
+        else:
+            new = np.clip(x[rng.integers(0, pieces, count)] * (1 + 1e-13 * rng.standard_normal(count)), 0, x[-1])
+        new = new[~np.isin(new, space.knots)]
+        if len(new):
+            yield rng, space, space.with_knots(new), new if len(new) > 1 else float(new[0])
+
+
+def nearly_extremal(rng, space, refined):
+    """Return coefficients that shrink nearly as much as any, with bits in all places."""
+    return extremal(space, refined).coefficients * (1 + 1e-3 * rng.standard_normal(space.dimension))
+
+
+def test_computed_coefficients_are_within_the_bound():
+    closest = 0
+    for rng, space, refined, new in cases(0, 500):
+        for c in (nearly_extremal(rng, space, refined), rng.standard_normal(space.dimension)):
+            f = kw.Spline(space, c)
+            error, bound = relative_error(f, refined, new), relative_error_bound(f, refined)
+            assert error <= bound
+            closest = max(closest, error / bound)
+    assert closest > 0.05  # the bound is not idle
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.complex128])
+def test_other_arithmetics(dtype):
+    for rng, space, refined, new in cases(1, 120):
+        c = nearly_extremal(rng, space, refined)
+        c = (c + 1j * c[::-1]).astype(dtype) if dtype is np.complex128 else c.astype(dtype)
+        f = kw.Spline(space, c)
+        assert relative_error(f, refined, new) <= relative_error_bound(f, refined)
+
+
+def test_points_weights_and_periods():
+    rng = np.random.default_rng(2)
+    t = np.concatenate([[0], np.sort(rng.random(7)), [1]])
+    for space in (kw.SplineSpace(3, t, periodic=True), kw.SplineSpace(2, t)):
+        a, b = space.domain
+        new = a + (b - a) * rng.random(5)
+        refined = space.with_knots(new)
+        plain = kw.Spline(space, rng.standard_normal((space.dimension, 3)))
+        rational = kw.Spline(space, 1 + rng.random((space.dimension, 3)), rational=True)
+        for f in (plain, rational):
+            assert relative_error(f, refined, new) <= relative_error_bound(f, refined) < 1e-13
+
+
+def test_the_bound_is_the_condition_number_times_a_few_roundings():
+    """(10ν + 1) u δ, up to what u² adds, for the spline that attains δ; less for all others."""
+    space = kw.SplineSpace.bezier(4, [0, 1])
+    for new, levels in (([0.5], 1), ([0.3, 0.6], 2), ([0.1, 0.3, 0.5, 0.6, 0.7, 0.8], 4)):
+        refined = space.with_knots(new)
+        most = (10 * levels + 1) * UNIT * condition(space, refined)
+        assert relative_error_bound(extremal(space, refined), refined) == pytest.approx(most, rel=1e-12)
+        assert relative_error_bound(kw.Spline(space, [1, 2, 3, 4, 5.0]), refined) < most
+
+
+def test_tiny_coefficients():
+    """Products below the normal numbers lose what the bound adds for them."""
+    space = kw.SplineSpace.bezier(3, [0, 1])
+    new = [0.1, 0.35, 0.8]
+    for scale in (1e-305, 1e-310, 1e-318, 1e-322):
+        f = kw.Spline(space, scale * np.array([1, -0.7, 0.9, 1.1]))
+        assert relative_error(f, space.with_knots(new), new) <= relative_error_bound(f, space.with_knots(new))
+
+
+def test_where_nothing_is_rounded():
+    space = kw.SplineSpace.bezier(3, [0, 1])
+    refined = space.with_knots([Fraction(1, 3)])
+    assert relative_error_bound(kw.Spline(space, [Fraction(1), Fraction(2), Fraction(3), Fraction(5)]), refined) == 0
+    assert relative_error_bound(kw.Spline(space, [1.0, 2, 3, 5]), space) == 0
+
+
+def test_nothing_is_known_of_the_relative_error_of_zero():
+    space = kw.SplineSpace.bezier(3, [0, 1])
+    assert relative_error_bound(kw.Spline(space, np.zeros(4)), space.with_knots([0.5])) == math.inf
+
+
+def test_bad_input():
+    import mpmath
+
+    space = kw.SplineSpace.bezier(1, [0, 1])
+    with pytest.raises(KnotError, match="does not refine"):
+        relative_error_bound(kw.Spline(space, [0.0, 1]), kw.SplineSpace.bezier(1, [0, 2]))
+    with pytest.raises(PointError, match="precision is not known; expected floats or Fractions"):
+        relative_error_bound(kw.Spline(space, [mpmath.mpf(1), mpmath.mpf(2)]), space.with_knots(0.5))
+    with pytest.raises(ParameterError, match="2 parameters has no single space"):
+        relative_error_bound(kw.surface(np.zeros((4, 4))), space)
