@@ -41,7 +41,7 @@ def some_knots(knots: Any, what: str, like: Array) -> Array:
 
 def in_order(t: Array) -> bool:
     """Tell whether knots are finite and nondecreasing: NaN fails every comparison, infinity could only be at an end."""
-    return not len(t) or bool(-math.inf < t.item(0) and t.item(-1) < math.inf and (t[:-1] <= t[1:]).all())
+    return not len(t) or bool(-math.inf < t.item(0) and t.item(-1) < math.inf and np.count_nonzero(t[:-1] <= t[1:]) == len(t) - 1)
 
 
 def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:
@@ -63,7 +63,7 @@ def require_multiplicity(knots: Array, degree: int) -> None:
     """Raise unless no knot is repeated more than degree + 1 times (degree + 1 makes a jump)."""
     order = degree + 1
     overshoot = knots[order:] == knots[:-order]
-    if overshoot.any():
+    if np.count_nonzero(overshoot):
         x = knots[int(np.argmax(overshoot))]
         raise KnotError(f"knot {x} has multiplicity {int(np.sum(knots == x))}; degree {degree} allows at most {order}")
 

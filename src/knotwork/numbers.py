@@ -17,7 +17,8 @@ from knotwork.errors import KnotworkError, SizeError
 
 Array = NDArray[Any]
 
-_KEPT = {np.dtype(t) for t in (np.float64, np.float32, np.complex128, object)}
+_FLOATS = {np.dtype(t) for t in (np.float64, np.float32, np.complex128)}
+_KEPT = {*_FLOATS, np.dtype(object)}
 
 
 def numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
@@ -25,6 +26,8 @@ def numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = Fal
 
     With `copy`, the array shares no memory with `values`.
     """
+    if type(values) is np.ndarray and values.dtype in _FLOATS and values.flags.c_contiguous:  # as most are
+        return values.copy() if copy else values
     if isinstance(values, np.ma.MaskedArray) or (
         isinstance(values, list | tuple) and any(isinstance(v, np.ma.MaskedArray) for v in values)
     ):
@@ -109,7 +112,7 @@ def all_finite(array: Array) -> bool:
     """Tell whether no element is NaN or infinite; exact numbers are finite unless they say otherwise."""
     if array.dtype == object:
         return all(x == x and abs(x) != float("inf") for x in array.reshape(-1).tolist())
-    return bool(np.isfinite(array).all())
+    return np.count_nonzero(np.isfinite(array)) == array.size
 
 
 def require_finite(array: Array, what: str, error: type[KnotworkError]) -> None:

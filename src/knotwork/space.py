@@ -327,14 +327,19 @@ class SplineSpace(Frozen):
         return self.refinement(knots)[0]
 
     def refinement(self, knots: Any) -> tuple[SplineSpace, Array]:
-        """Return the space with further knots, and those knots sorted; in a period, the seam counts at its start."""
+        """Return the space with further knots, and those knots as `new_knots` does."""
+        x = self.new_knots(knots)
+        refined = merged(self.knots, x)
+        require_multiplicity(refined, self.degree)
+        return SplineSpace.trusted(self.degree, refined, self.periodic), x
+
+    def new_knots(self, knots: Any) -> Array:
+        """Return knots inside the domain sorted, or raise; in a period, the seam counts at its start."""
         x = new_knots(knots, self.knots, self.domain)
         if self.periodic and len(x) and x[-1] == self.knots[-1]:
             seam = np.searchsorted(x, self.knots[-1], "left")
             x = np.concatenate([np.repeat(self.knots[:1], len(x) - seam), x[:seam]])
-        refined = merged(self.knots, x)
-        require_multiplicity(refined, self.degree)
-        return SplineSpace.trusted(self.degree, refined, self.periodic), x
+        return x
 
     def without_knots(self, knots: Any) -> SplineSpace:
         """Return the space with fewer knots.

@@ -53,8 +53,8 @@ def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
         knots = knots[0]
     if isinstance(knots, float) and not space.periodic and not space.exact:
         return _one(spline, knots, axis)
-    target, new = space.refinement(knots)
-    return refine_to(spline, axis, target, new)
+    T, P = _refined(spline, axis, space.new_knots(knots))
+    return spline.with_axis(axis, SplineSpace.trusted(space.degree, T, space.periodic), P)
 
 
 def _one(spline: Spline, u: float, axis: int) -> Spline:
@@ -63,7 +63,7 @@ def _one(spline: Spline, u: float, axis: int) -> Spline:
     t, n = space.knots, space.degree
     N = len(t) - n - 1
     if not t[n] <= u <= t[N]:
-        space.refinement(u)  # says what is wrong with it
+        space.new_knots(u)  # says what is wrong with it
     blocks = as_blocks(P, axis)
     A, _, B = blocks.shape
     W = np.empty((A, N + 1, B), P.dtype)
@@ -76,15 +76,21 @@ def _one(spline: Spline, u: float, axis: int) -> Spline:
 
 def refine_to(spline: Spline, axis: int, target: SplineSpace, new: Array) -> Spline:
     """Return the spline over `target`, which has the sorted knots `new` in addition (trusted)."""
+    return spline.with_axis(axis, target, _refined(spline, axis, new)[1])
+
+
+def _refined(spline: Spline, axis: int, new: Array) -> tuple[Array, Array]:
+    """Return the knots on one axis and the coefficients after inserting sorted knots inside the domain."""
     space, P = spline.spaces[axis], as_blocks(spline.coefficients, axis)
-    n = space.degree
+    n, rows = space.degree, space.dimension + len(new)
     if space.periodic:
         t, W, stop, lo, left = _around(space, new)
         P = np.ascontiguousarray(P[:, space.wrapped(-left, len(t) - n - 1)])
+        T, out = refined(t, W, stop, n, P, lo, rows)
+        T = T[: rows + 1].copy()
     else:
-        t, W, stop, lo = space.knots, new, space.dimension, 0
-    out = refined(t, W, stop, n, P, lo, target.dimension)
-    return spline.with_axis(axis, target, along(out, spline.coefficients, axis))
+        T, out = refined(space.knots, new, space.dimension, n, P, 0, rows)
+    return T, along(out, spline.coefficients, axis)
 
 
 def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int]:

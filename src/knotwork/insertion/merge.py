@@ -10,7 +10,7 @@ import numpy as np
 
 from knotwork.banded import combination, weighted_sum
 from knotwork.kernel import extent, kernel
-from knotwork.knots import advance, old_among
+from knotwork.knots import advance, merge, merged, old_among, old_is_next, require_multiplicity
 from knotwork.numbers import Array, empty
 from knotwork.parallel import in_parts
 
@@ -96,14 +96,26 @@ def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):  # type: ignore[no-unty
 
 
 @kernel
-def refine_curve(U, W, stop, n, lo, P, out, E, D):  # type: ignore[no-untyped-def]
-    """out[0, i] = refined control point lo + i of the curve P[0]; E has room for a row of weights."""
-    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
-    lw, hw = lo - lu, lo + n - hu
-    for i in range(out.shape[1]):
-        lu, lw = advance(U, lu, W, lw, stop)
-        hu, hw = advance(U, hu, W, hw, stop)
-        control_point(U, lu, hu, W, lw, hw - lw, P, out, i, E, D)
+def refine_curve(U, W, stop, n, lo, T, P, out, E, D):  # type: ignore[no-untyped-def]
+    """T[i] = merged knot lo + i, out[0, i] = refined control point lo + i of the curve P[0]; E has room for a row.
+
+    Returns false, and stops, where a knot occurs more than n + 1 times.
+    """
+    lu = hu = old_among(U, W, stop, lo)
+    lw = hw = lo - lu
+    for i in range(-n, out.shape[1] + 1):
+        if old_is_next(U, hu, W, hw, stop):
+            T[i + n] = U[hu]
+            hu += 1
+        else:
+            T[i + n] = W[hw]
+            hw += 1
+        if i > 0 and T[i + n] == T[i - 1]:
+            return False
+        if 0 <= i < out.shape[1]:
+            lu, lw = advance(U, lu, W, lw, stop)
+            control_point(U, lu, hu, W, lw, hw - lw, P, out, i, E, D)
+    return True
 
 
 @kernel
@@ -129,14 +141,19 @@ def refine_net(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-
                 combination(out, a, top + i, P, start[i], E, i, new[i], D)
 
 
-def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> Array:
-    """Return `rows` control points from `lo` on after inserting the sorted knots W; P is (A, len, B)."""
+def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> tuple[Array, Array]:
+    """Return rows + n + 1 knots and `rows` control points from `lo` on after inserting the sorted knots W.
+
+    P is (A, len, B). Raises if a knot occurs more than n + 1 times.
+    """
     A, B = P.shape[0], P.shape[2]
-    out = empty((A, rows, B), P.dtype)
+    T, out = np.empty(rows + n + 1, U.dtype), empty((A, rows, B), P.dtype)
     D = extent(B)
 
-    def curve(first: int, last: int) -> None:
-        refine_curve(U, W, stop, n, lo + first, P, out[:, first:last], np.empty((1, n + 1), U.dtype), D)
+    def curve(a: int, b: int) -> None:
+        E = np.empty((1, n + 1), U.dtype)
+        if not refine_curve(U, W, stop, n, lo + a, T[a : b + n + 1], P, out[:, a:b], E, D):
+            require_multiplicity(merged(U, W), n)
 
     def net(a: int, b: int) -> None:
         start, new, E = _room(min(BLOCK, rows), n, U)
@@ -145,8 +162,10 @@ def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int)
     if A == 1:  # contiguous parts either way
         in_parts(curve, rows, out.size)
     else:
+        merge(U, W, T, lo)
+        require_multiplicity(T, n)
         in_parts(net, A, out.size)
-    return out
+    return T, out
 
 
 def rows_of_matrix(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[Array, Array, Array]:

@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.banded import along, as_blocks
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.merge import refined
-from knotwork.knots import distinct, merged, new_knots, sorted_knots
+from knotwork.knots import distinct, new_knots, sorted_knots
 from knotwork.numbers import Array, exact, numbers, real_numbers
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -168,11 +168,9 @@ def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = F
         if not keep
     ]
     new = np.concatenate(missing) if missing else t[:0]
-    T = merged(t, new)
-    lo = 0 if keep_start else int(np.searchsorted(T, a, "left"))
-    hi = len(T) if keep_end else int(np.searchsorted(T, b, "right"))
-    P = refined(t, new, space.dimension, n, as_blocks(coefficients, axis), lo, hi - n - 1 - lo)
-    knots = T if len(T) == hi - lo else T[lo:hi].copy()
+    lo = 0 if keep_start else int(np.searchsorted(t, a, "left"))
+    hi = len(new) + (len(t) if keep_end else int(np.searchsorted(t, b, "right")))
+    knots, P = refined(t, new, space.dimension, n, as_blocks(coefficients, axis), lo, hi - n - 1 - lo)
     return spline.with_axis(axis, SplineSpace.trusted(n, knots), along(P, coefficients, axis))
 
 
@@ -206,4 +204,4 @@ def _in_pieces(P: Array, axis: int, space: SplineSpace) -> Array:
         int(np.searchsorted(t, a, "left")),
         (len(values) - 1) * (n + 1),
     )
-    return along(refined(t, new, space.dimension, n, as_blocks(P, axis), first, rows), P, axis)
+    return along(refined(t, new, space.dimension, n, as_blocks(P, axis), first, rows)[1], P, axis)
