@@ -82,7 +82,17 @@ def test_every_command_has_help_with_an_example(run):
 
 
 def test_the_face_of_the_command(run):
-    assert set(main.commands) == {"info", "insert", "remove", "reduce", "bezier", "convert", "convert-space", "plot"}
+    assert set(main.commands) == {
+        "info",
+        "insert",
+        "remove",
+        "reduce",
+        "bezier",
+        "convert",
+        "condition",
+        "convert-space",
+        "plot",
+    }
 
 
 def test_version_is_that_of_the_package(run):

@@ -91,16 +91,12 @@ def insert(
       knotwork insert curve.json -k 0.25,0.5,0.5 -o finer.json
       knotwork insert drawing.svg --parts 2 -o finer.json
     """
-    import numpy as np
-
     if not knots and parts is None:
         raise click.UsageError("nothing to insert; expected --knots or --parts")
 
     def change(spline: kw.Spline) -> tuple[kw.Spline, float]:
         if parts is not None:
-            x = spline.spaces[spline.axis(axis)].breaks
-            inner = x[:-1, None] + np.diff(x)[:, None] * np.arange(1, parts) / parts
-            spline = kw.insert(spline, inner.ravel(), axis)
+            spline = kw.insert(spline, _between(spline.spaces[spline.axis(axis)], parts), axis)
         return kw.insert(spline, [x for given in knots for x in given], axis) if knots else spline, 0.0
 
     _change(file, output, only, as_json, change)
@@ -256,6 +252,37 @@ def convert_space(
     _change(file, output, only, as_json, change)
 
 
+@main.command(short_help="Tell how far knots can shrink coefficients, and rounding move them.")
+@click.argument("file", type=FILE)
+@click.option("-k", "--knots", type=terminal.knots, multiple=True, help="New knots, as in 0.25,0.5,0.5; repeatable.")
+@click.option("--parts", type=click.IntRange(2, 10**4), help="Divide every knot interval into so many equal parts.")
+@axis_option
+@as_json
+def condition(file: Path, knots: Sequence[list[float]], parts: int | None, axis: int, as_json: bool) -> None:
+    """Tell how well the coefficients of the splines of FILE are determined in one parameter.
+
+    The condition of the basis is how much larger than the spline its coefficients can be. With new knots: the condition
+    of inserting them, which is how much larger than the new coefficients the old ones can be, beside the largest there
+    can be for a single knot; and for curves a bound on the relative error of the new coefficients in floating point.
+    Closed splines are opened at the seam.
+
+    \b
+    Examples:
+      knotwork condition curve.json
+      knotwork condition curve.json -k 0.25,0.5
+    """
+    rows = []
+    for i, spline in enumerate(kw.read(file)):
+        try:
+            rows.append({"index": i, **_condition(spline, [x for given in knots for x in given], parts, axis)})
+        except KnotworkError as exc:
+            raise Failure(f"{file}: spline {i}: {exc}") from exc
+    if as_json:
+        _print_json({"input": str(file), "splines": rows})
+    else:
+        click.echo(f"{file}: {report.counted(len(rows), 'spline')}\n\n{report.conditions(rows)}")
+
+
 @main.command(short_help="Convert between file formats.")
 @click.argument("files", type=FILE, nargs=-1, required=True)
 @click.option("--accuracy", type=float, help="Largest error, in the units of the points, if the format is not exact.")
@@ -377,6 +404,32 @@ def _row(index: int, before: kw.Spline, after: kw.Spline, bound: float, seconds:
         "bound": bound,
         "seconds": round(seconds, 6),
     }
+
+
+def _between(space: kw.SplineSpace, parts: int) -> Any:
+    """Return the knots that divide every interval into equal parts."""
+    import numpy as np
+
+    x = space.breaks
+    return (x[:-1, None] + np.diff(x)[:, None] * np.arange(1, parts) / parts).ravel()
+
+
+def _condition(spline: kw.Spline, knots: Sequence[float], parts: int | None, axis: int) -> dict[str, Any]:
+    """Return the condition of a basis, and of the insertion of knots if there are any."""
+    axis = spline.axis(axis)
+    if spline.spaces[axis].periodic:
+        spline = kw.clamp(spline)
+    space = spline.spaces[axis]
+    row: dict[str, Any] = {"degree": space.degree, "points": space.dimension, "basis": kw.stability.kappa(space)}
+    new = [*knots, *(_between(space, parts) if parts else [])]
+    if new:
+        refined = space.with_knots(new)
+        row |= {
+            "insertion": kw.stability.condition(space, refined),
+            "worst": float(kw.stability.worst(space.order)),
+            "error": kw.stability.relative_error_bound(spline, refined) if spline.parameters == 1 else None,
+        }
+    return row
 
 
 def _in_bezier_form(spline: kw.Spline) -> kw.Spline:

@@ -123,6 +123,18 @@ def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
+def conditions(rows: Sequence[dict[str, Any]]) -> str:
+    """Return the table of condition numbers: of each basis, and of inserting knots if any were."""
+    header = ["#", "degree", "points", "basis"]
+    cells = [[str(r["index"]), str(r["degree"]), f"{r['points']:,}", f"{r['basis']:.6g}"] for r in rows]
+    if rows and "insertion" in rows[0]:
+        header += ["insertion", "one knot ≤", "relative error ≤"]
+        for line, r in zip(cells, rows, strict=True):
+            error = "–" if r["error"] is None else f"{r['error']:.2g}"
+            line += [f"{r['insertion']:.6g}", f"{r['worst']:.6g}", error]
+    return table(">" * len(header), header, cells)
+
+
 def table(align: str, header: Sequence[str], rows: Sequence[Sequence[str]], total: Sequence[str] | None = None) -> str:
     """Return rows aligned under a header, a last one below a rule."""
     every = [header, *rows, *([total] if total else [])]
