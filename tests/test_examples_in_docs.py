@@ -55,7 +55,8 @@ def run(block, name, names):
         return
     told = []
     test = doctest.DocTestParser().get_doctest(block, names, name, name, 0)
-    assert doctest.DocTestRunner(optionflags=OPTIONS).run(test, out=told.append, clear_globs=False).failed == 0, told
+    runner = doctest.DocTestRunner(optionflags=OPTIONS)
+    assert runner.run(test, out=told.append, clear_globs=False).failed == 0, "".join(told)
     names.update(test.globs)
 
 
