@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from knotwork import arithmetic as arithmetic
     from knotwork import progressive as progressive
     from knotwork import stability as stability
-    from knotwork.conversion import Conversion, convert, elevate
+    from knotwork.conversion import Conversion, convert, elevate, lower
     from knotwork.files import Written, read, write
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
@@ -37,6 +37,7 @@ __all__ = [
     "from_bezier",
     "insert",
     "insertion_matrix",
+    "lower",
     "plot",
     "progressive",
     "read",
@@ -53,7 +54,7 @@ __all__ = [
 
 _PARTS = {
     "arithmetic": (),
-    "conversion": ("Conversion", "convert", "elevate"),
+    "conversion": ("Conversion", "convert", "elevate", "lower"),
     "files": ("Written", "read", "write"),
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),

@@ -2,5 +2,6 @@
 
 from knotwork.conversion.convert import Conversion, convert
 from knotwork.conversion.elevation import elevate
+from knotwork.conversion.lowering import lower
 
-__all__ = ["Conversion", "convert", "elevate"]
+__all__ = ["Conversion", "convert", "elevate", "lower"]

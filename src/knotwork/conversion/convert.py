@@ -150,7 +150,7 @@ def _along_axis(spline: Spline, axis: int, target: SplineSpace, how: str) -> tup
     if how == "interpolation":
         return _by_interpolation(spline, axis, target), how
     if how == "least-squares":
-        return _by_least_squares(spline, axis, target), how
+        return by_least_squares(spline, axis, target), how
     if holds(target, space):
         return _applied(embedding(space, target), spline, axis, target), "oslo"
     if target.degree >= space.degree:
@@ -163,7 +163,7 @@ def _along_axis(spline: Spline, axis: int, target: SplineSpace, how: str) -> tup
         small = np.abs(matrix.entries).sum(axis=1).max() <= SMALL
         if how == "oslo" or small or (space.exact and difference(spline, found) == 0):
             return found, "oslo"
-    return _by_least_squares(spline, axis, target), "least-squares"
+    return by_least_squares(spline, axis, target), "least-squares"
 
 
 def _applied(matrix: Banded, spline: Spline, axis: int, target: SplineSpace) -> Spline:
@@ -171,7 +171,7 @@ def _applied(matrix: Banded, spline: Spline, axis: int, target: SplineSpace) -> 
     return spline.with_axis(axis, target, matrix.apply(spline.coefficients, axis))
 
 
-def _by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
+def by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
     """Minimise ‖W (A b − c)‖₂ on the common refinement, W = diag √(t[i+n+1] − t[i])."""
     space = spline.spaces[axis]
     finer = common_refinement(space, target)
@@ -186,7 +186,7 @@ def _by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
         # rotations of many rows add up their rounding: what they leave is fitted once more
         return b if b.dtype == object else b + least_squares(A, weight, y - A.apply(b, 0))
 
-    return _solved(spline, axis, target, c, solution)
+    return solved(spline, axis, target, c, solution)
 
 
 def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
@@ -197,7 +197,7 @@ def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
         x[0], x[-1] = target.domain
     values = _collocation(spline.spaces[axis], x).apply(spline.coefficients, axis)
     A = _collocation(target, x)
-    return _solved(spline, axis, target, values, lambda y: solve(A, y))
+    return solved(spline, axis, target, values, lambda y: solve(A, y))
 
 
 def _collocation(space: SplineSpace, x: Array) -> Banded:
@@ -206,9 +206,7 @@ def _collocation(space: SplineSpace, x: Array) -> Banded:
     return Banded(first, E[0], space.dimension)
 
 
-def _solved(
-    spline: Spline, axis: int, target: SplineSpace, values: Array, solution: Callable[[Array], Array]
-) -> Spline:
+def solved(spline: Spline, axis: int, target: SplineSpace, values: Array, solution: Callable[[Array], Array]) -> Spline:
     """Return the spline over `target` whose coefficients solve a system along one axis for every column of values."""
     blocks = as_blocks(values, axis)
     A, rows, B = blocks.shape
