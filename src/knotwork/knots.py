@@ -41,7 +41,9 @@ def some_knots(knots: Any, what: str, like: Array) -> Array:
 
 def in_order(t: Array) -> bool:
     """Tell whether knots are finite and nondecreasing: NaN fails every comparison, infinity could only be at an end."""
-    return not len(t) or bool(-math.inf < t.item(0) and t.item(-1) < math.inf and np.count_nonzero(t[:-1] <= t[1:]) == len(t) - 1)
+    return not len(t) or bool(
+        -math.inf < t.item(0) and t.item(-1) < math.inf and np.count_nonzero(t[:-1] <= t[1:]) == len(t) - 1
+    )
 
 
 def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:

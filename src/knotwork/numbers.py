@@ -6,6 +6,7 @@ elements (Fraction, mpmath, …), but its integers become Fractions, so that div
 
 from __future__ import annotations
 
+import math
 import os
 from fractions import Fraction
 from typing import Any
@@ -55,6 +56,8 @@ def numbers(values: Any, what: str, error: type[KnotworkError], copy: bool = Fal
 
 def whole(value: Any, what: str, least: int, error: type[KnotworkError]) -> int:
     """Return a whole number of at least `least` as an int, or raise."""
+    if type(value) is int and value >= least:
+        return value
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise error(f"{what} {value!r} given; expected an integer of at least {least}")
     return int(value)
@@ -70,9 +73,10 @@ def real_numbers(values: Any, what: str, error: type[KnotworkError]) -> Array:
 def real_array(values: Any, what: str, error: type[KnotworkError], copy: bool = False) -> Array:
     """Return real `values`, perhaps not finite, as a float64 or exact array."""
     x = numbers(values, what, error, copy)
-    if x.dtype.kind == "c" or (x.dtype == object and any(isinstance(v, complex) for v in x.reshape(-1).tolist())):
+    kind = x.dtype.kind
+    if kind == "c" or (kind == "O" and any(isinstance(v, complex) for v in x.reshape(-1).tolist())):
         raise error(f"{what}: complex numbers given; expected real ones")
-    return x.astype(np.float64) if x.dtype == np.float32 else x
+    return x.astype(np.float64) if x.dtype.char == "f" else x
 
 
 def in_arithmetic_of(like: Array, x: Array, what: str, error: type[KnotworkError]) -> Array:
@@ -112,7 +116,7 @@ def all_finite(array: Array) -> bool:
     """Tell whether no element is NaN or infinite; exact numbers are finite unless they say otherwise."""
     if array.dtype == object:
         return all(x == x and abs(x) != float("inf") for x in array.reshape(-1).tolist())
-    return np.count_nonzero(np.isfinite(array)) == array.size
+    return bool(np.count_nonzero(np.isfinite(array)) == array.size)
 
 
 def require_finite(array: Array, what: str, error: type[KnotworkError]) -> None:
@@ -130,9 +134,7 @@ def empty(shape: tuple[int, ...], dtype: Any) -> Array:
 
 def require_room(shape: tuple[int, ...], dtype: Any) -> None:
     """Raise `SizeError` if an array would not fit in memory."""
-    size = np.dtype(dtype).itemsize
-    for count in shape:
-        size *= int(count)
+    size = np.dtype(dtype).itemsize * math.prod(map(int, shape))
     if size > 1 << 30 and size > _physical_memory():
         wanted = f"{size / 1e9:.3g} GB" if size < 1 << 80 else "more than any machine has"
         raise SizeError(
