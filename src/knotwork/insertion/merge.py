@@ -16,6 +16,8 @@ from knotwork.parallel import in_parts
 
 #: rows whose weights are computed before they are applied to all curves of a net
 BLOCK = 64
+#: curves of a net to which a row is applied at a time
+TILE = 8
 
 
 @kernel
@@ -136,9 +138,10 @@ def refine_net(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-
     for top in range(0, out.shape[1], len(start)):
         count = min(len(start), out.shape[1] - top)
         matrix_rows(U, W, stop, n, lo + top, count, start, new, E)
-        for a in range(len(P)):
+        for left in range(0, len(P), TILE):
             for i in range(count):
-                combination(out, a, top + i, P, start[i], E, i, new[i], D)
+                for a in range(left, min(left + TILE, len(P))):
+                    combination(out, a, top + i, P, start[i], E, i, new[i], D)
 
 
 def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> tuple[Array, Array]:
