@@ -58,8 +58,8 @@ def worst(k: int) -> Worst:
     --------
     >>> import knotwork as kw
     >>> cubic = kw.stability.worst(4)
-    >>> float(cubic), cubic.x
-    (3.649435918604...
+    >>> round(cubic, 7), round(cubic.x, 7)
+    (3.6494359, 1.324718)
     """
     k = whole(k, "order", 1, ParameterError)
     m = k // 2
