@@ -41,7 +41,7 @@ def monomial(n: int, a: Any = 0) -> Sequence:
 
 def power(nodes: Any) -> Sequence:
     """Return x_1 … x_n x_0 … x_{n-1} for distinct nodes: the functions (t - x_k)ⁿ / Π_{j≠k} (x_j - x_k) (§2.4.3)."""
-    x = _nodes(nodes)
+    x = flat_nodes(nodes)
     if not len(x):
         raise KnotError("no nodes given; expected n + 1 for degree n")
     for i in range(len(x)):
@@ -55,7 +55,7 @@ def newton_dual(nodes: Any) -> Sequence:
 
     The functions are h_k(t - t_k, …, t - t_n), complete homogeneous symmetric polynomials, and 1 for k = 0.
     """
-    x = _nodes(nodes)
+    x = flat_nodes(nodes)
     return Sequence([*x, *[DELTA] * len(x)])
 
 
@@ -64,7 +64,8 @@ def hermite_primal() -> Sequence:
     return Sequence([1.5, 0, 0, 1, 1, -0.5])
 
 
-def _nodes(nodes: Any) -> Array:
+def flat_nodes(nodes: Any) -> Array:
+    """Return nodes in a row, checked to be finite numbers."""
     x = numbers(nodes, "nodes", KnotError)
     if x.ndim != 1:
         raise KnotError(f"nodes of shape {x.shape} given; expected numbers in a row")

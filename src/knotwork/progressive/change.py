@@ -91,7 +91,10 @@ def insert(curve: Curve, u: Any, times: int = 1) -> Insertion:
     T = triangle(P, t, new)
     above = np.arange(times)
     points = np.concatenate([T[above, 0], right_edge(T)])
-    return Insertion(curve, np.concatenate([t[:n], new, t[n:]]), points)
+    knots = np.concatenate([t[:n], new, t[n:]])
+    for array in (knots, points):
+        array.setflags(write=False)
+    return Insertion(curve, knots, points)
 
 
 def change_basis(curve: Curve, sequence: Any, method: str = "auto") -> Curve:
@@ -122,7 +125,7 @@ def change_basis(curve: Curve, sequence: Any, method: str = "auto") -> Curve:
     target = sequence if isinstance(sequence, Sequence) else Sequence(sequence)
     if target.degree != curve.degree:
         raise KnotError(f"a sequence of degree {target.degree} given; the curve has degree {curve.degree}")
-    if method != "auto" and method not in METHODS:
+    if method != "auto" and (not isinstance(method, str) or method not in METHODS):
         raise ParameterError(f"method {method!r} given; expected 'auto' or one of {', '.join(METHODS)}")
     P, t, u = beside(curve.points, curve.knots, target.homogeneous)
     change = _safest(t, u) if method == "auto" else METHODS[method]

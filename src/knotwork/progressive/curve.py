@@ -10,7 +10,17 @@ from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.kernel import extent
 from knotwork.numbers import Array, numbers, require_finite
 from knotwork.progressive import scheme
-from knotwork.progressive.homogeneous import DELTA, affine, beside, broken_at, pair, pairs, written
+from knotwork.progressive.homogeneous import (
+    DELTA,
+    affine,
+    alike,
+    beside,
+    broken_at,
+    pair,
+    pairs,
+    require_together,
+    written,
+)
 from knotwork.progressive.procedures import blossoms, left_edge, repeated, sablonniere, triangle
 from knotwork.progressive.sequence import Sequence
 from knotwork.space import Frozen
@@ -88,6 +98,11 @@ class Curve(Frozen):
     def scalar(self) -> bool:
         """Whether the values are numbers, not points."""
         return self.control.ndim == 1
+
+    @property
+    def exact(self) -> bool:
+        """Whether the knots and the control points are exact numbers."""
+        return self.sequence.exact
 
     @property
     def points(self) -> Array:
@@ -174,6 +189,9 @@ class Curve(Frozen):
         """
         A, shape = affine(a, "parameters")
         n = self.degree
+        if A.dtype == object and not self.exact:
+            points, t = alike(self.points, self.knots, A)[:2]
+            return self.over(Sequence.trusted(t), points).derivatives(a)
         P, t, A, delta = beside(*self._newton_dual_form, A, pairs([DELTA] * n, "δ"))
         out = np.empty((n + 1, len(A), P.shape[1]), P.dtype)
         scheme.over(t, scheme.edge)(out, P, t, A, delta, np.empty_like(P), extent(P.shape[1]))
@@ -240,7 +258,9 @@ class Curve(Frozen):
     def integrate(self, a: Any, b: Any) -> Any:
         """Return the integral from a to b, numbers or arrays alike: a difference of the antiderivative (§2.3.5)."""
         whole = self.antiderivative()
-        return whole(b) - whole(a)
+        above, below = whole(b), whole(a)
+        require_together("a and b", below, above)
+        return above - below
 
     # ---- its basis, by the name of the curve --------------------------------------------------------------------
 

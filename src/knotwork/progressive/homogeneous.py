@@ -30,13 +30,16 @@ def pairs(values: Any, what: str, error: type[KnotworkError] = KnotError) -> Arr
         for item in items:
             if len(item) != 2:
                 raise error(f"{what}: {item!r} given; expected a number or a pair (t, w)")
-        given = numbers([x for item in items for x in item], what, error).reshape(-1, 2)
+        given = numbers([x for item in items for x in item], what, error)
+        if given.ndim != 1:
+            raise error(f"{what}: {items[0]!r} given; expected numbers and pairs (t, w) of numbers")
+        given = given.reshape(-1, 2)
     given = given.astype(np.float64) if given.dtype == np.float32 else given
     require_finite(given, what, error)
     nothing = np.flatnonzero(np.all(given == 0, axis=1))
     if len(nothing):
         raise error(f"{what}: {nothing[0] + 1} is (0, 0), which is neither a number nor a vector")
-    return np.ascontiguousarray(given)
+    return np.array(given, order="C")  # of its own: the knots of a sequence never change
 
 
 def pair(value: Any, what: str, error: type[KnotworkError] = ParameterError) -> Array:
@@ -48,6 +51,15 @@ def affine(values: Any, what: str) -> tuple[Array, tuple[int, ...]]:
     """Return affine parameters as homogeneous pairs (m, 2), and their shape."""
     given = numbers(values, what, ParameterError)
     return pairs(given.reshape(-1), what, ParameterError), given.shape
+
+
+def require_together(what: str, *values: Any) -> None:
+    """Raise unless the shapes of values at parameters broadcast."""
+    shapes = [np.shape(v) for v in values]
+    try:
+        np.broadcast_shapes(*shapes)
+    except ValueError:
+        raise ParameterError(f"{what}: the shapes do not broadcast: values of {shapes[0]} and {shapes[1]}") from None
 
 
 def alike(*arrays: Array) -> list[Array]:
@@ -74,7 +86,8 @@ def written(knot: Any) -> str:
 
 def crossed(b: Array, a: Array) -> Array:
     """Return b × a = b_t a_w - a_t b_w, the denominator of the combination in which a and b give way to u."""
-    return cast(Array, b[..., 0] * a[..., 1] - a[..., 0] * b[..., 1])
+    with np.errstate(all="ignore"):
+        return cast(Array, b[..., 0] * a[..., 1] - a[..., 0] * b[..., 1])
 
 
 def broken_at(t: Array) -> tuple[int, int] | None:

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from knotwork.errors import KnotError, ParameterError
-from knotwork.numbers import Array, exact
+from knotwork.numbers import Array, exact, real_numbers
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import alike, crossed, pair, written
-from knotwork.progressive.sequence import Sequence
 
 
 @dataclass(frozen=True)
@@ -79,33 +78,23 @@ def matches(p: Curve, q: Curve, knot: Any = None, tolerance: float = 0) -> Match
         raise KnotError(f"curves of degrees {n} and {q.degree} given; expected equal degrees of at least 1")
     if p.points.shape[1] != q.points.shape[1]:
         raise ParameterError(f"points in {p.points.shape[1]} and in {q.points.shape[1]} dimensions given")
-    if not tolerance >= 0:
+    epsilon = real_numbers(tolerance, "tolerance", ParameterError)
+    if epsilon.ndim or epsilon < 0:
         raise ParameterError(f"tolerance {tolerance} given; expected a number of at least 0")
     at = p.knots[n : n + 1] if knot is None else pair(knot, "knot", KnotError)
     for curve in (p, q):
         if not _has(curve, at):
             raise KnotError(f"{written(at[0])} is not a knot of {curve.sequence!r}; expected one that both curves have")
-    if tolerance == 0:
-        p, q = _exact(p), _exact(q)
-    t, w = at[0]
-    a = 0 if w == 0 else t / w if at.dtype.kind != "f" or tolerance else exact(at, "knot", KnotError)[0]
-    if isinstance(a, np.ndarray):
-        a = a[0] / a[1]
-    near = np.abs(p.derivatives(a) - q.derivatives(a)).reshape(n + 1, -1).max(axis=1) <= tolerance
+    t, w = (exact(at, "knot", KnotError) if epsilon == 0 and at.dtype.kind == "f" else at)[0]
+    a = t / w if w != 0 else w  # the highest derivative is the same everywhere
+    apart = p.derivatives(a).reshape(n + 1, -1) - q.derivatives(a).reshape(n + 1, -1)
+    near = np.abs(apart).max(axis=1) <= epsilon
     agreeing = n + 1 if near.all() else int(np.argmin(near))
     orders = range(agreeing) if w != 0 else range(n, n + 1) if near[n] else range(0)
-    return Match((t, w), tuple(orders))
+    return Match(tuple(at[0].tolist()), tuple(orders))
 
 
 def _has(curve: Curve, knot: Array) -> bool:
     """Tell whether one of the curve's knots is this one, up to a factor."""
     knots, at = alike(curve.knots, knot)
     return bool(np.any(crossed(knots, at[0]) == 0))
-
-
-def _exact(curve: Curve) -> Curve:
-    """Return a curve of floats as the exact curve it stands for."""
-    if "c" in (curve.control.dtype.kind, curve.knots.dtype.kind):
-        return curve  # exact complex numbers are not to be had
-    points, t = exact(curve.control, "points", ParameterError), exact(curve.knots, "knots", ParameterError)
-    return Curve.trusted(Sequence.trusted(t), points)

@@ -9,6 +9,7 @@ import numpy as np
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.kernel import extent, kernel
 from knotwork.numbers import Array, empty, numbers, require_finite, whole
+from knotwork.progressive.bases import flat_nodes
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import affine, alike, beside
 from knotwork.progressive.scheme import over, quotient
@@ -99,7 +100,7 @@ def newton_dual_by_differences(nodes: Any, t: Any) -> Array:
     -------
     ndarray, shape (*t.shape, n + 1)
     """
-    x = numbers(nodes, "nodes", KnotError)
+    x = flat_nodes(nodes)
     u, shape = affine(t, "parameters")
     x, u = alike(x, u[:, 0])
     n = len(x)
@@ -141,6 +142,8 @@ def evenly_spaced(curve: Curve, start: Any, step: Any, count: int) -> Array:
     n = curve.degree
     m = whole(count, "count", 0, ParameterError)
     ends = numbers([start, step], "start and step", ParameterError)
+    if ends.ndim != 1:
+        raise ParameterError(f"start and step of shape {ends.shape[1:]} given; expected numbers")
     require_finite(ends, "start and step", ParameterError)
     first = curve(ends[0] + ends[1] * np.arange(n + 1).astype(ends.dtype)).reshape(n + 1, -1)
     for k in range(1, n + 1):

@@ -102,7 +102,7 @@ def edge(out, P, t, A, delta, R, D):  # type: ignore[no-untyped-def]
                 R[q, c] = P[q, c]
         for r in range(n):
             level(R, R, t[r:], delta, n - r, A[i], D)
-        f = 1
+        f = A[i, 1] - A[i, 1] + 1
         for k in range(n + 1):
             for c in range(len(D)):
                 out[k, i, c] = f * R[k, c]

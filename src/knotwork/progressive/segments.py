@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from knotwork.errors import ParameterError
-from knotwork.numbers import Array, whole
+from knotwork.numbers import Array, real_numbers, whole
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import pairs, written
 from knotwork.progressive.procedures import blossoms
@@ -96,11 +96,12 @@ def _piece(space: SplineSpace, interval: Any) -> int:
     """Return the number of an interval given by its number or its ends."""
     breaks = space.breaks
     count = len(breaks) - 1
-    if isinstance(interval, list | tuple | np.ndarray) and len(interval) == 2:
-        for i in range(count):
-            if breaks[i] == interval[0] and breaks[i + 1] == interval[1]:
-                return i
-        raise ParameterError(f"interval {interval!r} given; expected two neighbouring breaks of {space!r}")
+    if isinstance(interval, list | tuple | np.ndarray):
+        ends = real_numbers(interval, "interval", ParameterError)
+        first = int(np.searchsorted(breaks, ends[0])) if ends.shape == (2,) else count
+        if first >= count or breaks[first] != ends[0] or breaks[first + 1] != ends[1]:
+            raise ParameterError(f"interval {interval!r} given; expected two neighbouring breaks of {space!r}")
+        return first
     i = whole(interval, "interval", -count, ParameterError)
     if i >= count:
         raise ParameterError(f"interval {i} given; {space!r} has {count}, counted from 0")
@@ -154,7 +155,7 @@ def _meant(space: SplineSpace, U: Array) -> int:
             "a refinement (§1.3); give `interval`"
         )
     for x in breaks[valid[1:]]:
-        if len(finite) < len(U) and short(x):
+        if short(x):
             raise ParameterError(
                 f"the segments that meet at knot {x} have different blossoms at {said}; give `interval`"
             )

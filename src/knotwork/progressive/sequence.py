@@ -10,7 +10,7 @@ import numpy as np
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.numbers import Array, numbers, require_finite, whole
 from knotwork.progressive import scheme
-from knotwork.progressive.homogeneous import affine, alike, beside, broken_at, pairs, written
+from knotwork.progressive.homogeneous import affine, alike, beside, broken_at, crossed, pairs, require_together, written
 from knotwork.progressive.procedures import blossoms, repeated
 from knotwork.space import Frozen
 
@@ -58,6 +58,9 @@ class Sequence(Frozen):
                 f"the knots are not progressive: knot {i + 1} ({written(t[i])}) and knot {j + 1} ({written(t[j])}) "
                 f"must differ for degree {self.degree}"
             )
+        n = self.degree
+        if not self.exact and not np.isfinite(crossed(t[n:, None], t[:n])).all():
+            raise KnotError(f"the knots reach so far that their differences overflow float64: {self!r}")
 
     def _fill(self, t: Array) -> None:
         t = t.view()
@@ -97,7 +100,7 @@ class Sequence(Frozen):
 
     def __repr__(self) -> str:
         def short(knot: Any) -> str:
-            return written([int(x) if isinstance(x, float) and x == int(x) else x for x in knot])
+            return written([int(x) if isinstance(x, float) and x == int(x) and abs(x) < 1e16 else x for x in knot])
 
         return f"Sequence([{', '.join(map(short, self))}])"
 
@@ -182,6 +185,7 @@ class Sequence(Frozen):
     def marsden(self, x: Any, t: Any) -> Any:
         """Return Σ_k ψ_k(t) b_k(x), which is (x - t)^n: Marsden's identity (Thm 2.2.1)."""
         psi, b = self.dual(t), self.basis(x)
+        require_together("x and t", b, psi)
         return (psi * b).sum(axis=-1)
 
 
