@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from fractions import Fraction
+from numbers import Rational
 from typing import Any
 
 import numpy as np
@@ -70,18 +71,30 @@ def _operation(kind: str, name: str) -> tuple[Callable[..., Any], Callable[..., 
     operate = getattr(Fraction, f"__{name}__")
 
     def method(self: Counting, other: Any) -> Any:
-        y = other.value if isinstance(other, Counting) else other
-        return _counted(kind, operate(self.value, y))
+        y = _fraction(other)
+        return NotImplemented if y is None else _counted(kind, operate(self.value, y))
 
     def reflected(self: Counting, other: Any) -> Any:
-        return _counted(kind, operate(Fraction(other), self.value))
+        y = _fraction(other)
+        return NotImplemented if y is None else _counted(kind, operate(y, self.value))
 
     return method, reflected
 
 
-def _counted(kind: str, value: Fraction) -> Any:
-    if value is NotImplemented:
-        return NotImplemented
+def _fraction(x: Any) -> Fraction | None:
+    """Return the exact value of a real number, None for anything else."""
+    if isinstance(x, Counting):
+        return x.value
+    if isinstance(x, Rational):
+        return Fraction(x)
+    if not isinstance(x, float | np.floating):
+        return None
+    if not np.isfinite(x):
+        raise KnotworkError(f"{x} given; expected finite numbers")
+    return Fraction(x.item() if isinstance(x, np.floating) else x)
+
+
+def _counted(kind: str, value: Fraction) -> Counting:
     counts = _counts.get()
     if counts is not None:
         setattr(counts, kind, getattr(counts, kind) + 1)
@@ -95,7 +108,10 @@ class Counting:
     __slots__ = ("value",)
 
     def __init__(self, value: Any) -> None:
-        self.value = Fraction(value)
+        x = _fraction(value)
+        if x is None:
+            raise KnotworkError(f"{value!r} given; expected a real number")
+        self.value = x
 
     @staticmethod
     def array(values: Any) -> Array:
