@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from knotwork import arithmetic as arithmetic
     from knotwork import progressive as progressive
     from knotwork import stability as stability
-    from knotwork.conversion import Conversion, convert, elevate, lower
+    from knotwork.conversion import Conversion, PolynomialPieces, convert, elevate, from_pieces, lower
     from knotwork.files import Written, read, write
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
@@ -23,6 +23,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Conversion",
+    "PolynomialPieces",
     "Reduction",
     "Removal",
     "Spline",
@@ -35,6 +36,7 @@ __all__ = [
     "curve",
     "elevate",
     "from_bezier",
+    "from_pieces",
     "insert",
     "insertion_matrix",
     "lower",
@@ -54,7 +56,7 @@ __all__ = [
 
 _PARTS = {
     "arithmetic": (),
-    "conversion": ("Conversion", "convert", "elevate", "lower"),
+    "conversion": ("Conversion", "PolynomialPieces", "convert", "elevate", "from_pieces", "lower"),
     "files": ("Written", "read", "write"),
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),

@@ -12,11 +12,12 @@ from knotwork.conversion.chebyshev import chebyshev
 from knotwork.conversion.common import common_refinement, difference, embedding, holds
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
+from knotwork.conversion.polynomials import BASES, to_pieces
 from knotwork.elimination import solve
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import Basis
 from knotwork.least_squares import least_squares
-from knotwork.numbers import Array, exact
+from knotwork.numbers import Array, exact, in_arithmetic_of, real_numbers
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -28,12 +29,13 @@ WAYS = ("auto", "oslo", "interpolation", "least-squares")
 class Conversion(NamedTuple):
     """The result of a conversion."""
 
-    spline: Spline
+    #: a Spline, or PolynomialPieces if these were asked for
+    spline: Any
     #: the spline given and the one returned differ by this much at most, anywhere, in any coordinate
     bound: Any
     #: whether they are the same function; in float arithmetic, up to rounding
     exact: bool
-    #: what was done: "oslo", "interpolation" or "least-squares"; one a parameter where they differ
+    #: what was done: "oslo", "interpolation", "least-squares", …; one a parameter where they differ
     how: Any
 
 
@@ -43,8 +45,9 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
     Parameters
     ----------
     spline : Spline
-    target : SplineSpace or sequence of SplineSpace
-        Of any degree and knots, over the domain of the spline. One a parameter, or a single one with `axis`.
+    target : SplineSpace or sequence of SplineSpace, "bezier" or "monomial"
+        A space of any degree and knots, over the domain of the spline. One a parameter, or a single one with `axis`.
+        Or a basis, for the polynomial pieces of the spline, each in that basis over its own interval.
     axis : int, optional
         The only parameter to convert.
     how : {"auto", "oslo", "interpolation", "least-squares"}
@@ -84,6 +87,8 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
     >>> found.spline.points.tolist(), found.exact, found.how
     ([0.0, 1.0, 3.0, 4.0], True, 'oslo')
     """
+    if isinstance(target, str) and target in BASES and axis is None:
+        return Conversion(to_pieces(spline, target), 0 * rounding(spline), True, target)
     targets = _targets(spline, target, axis)
     if not isinstance(how, str) or how not in WAYS:
         raise ParameterError(f"how={how!r} given; expected one of {', '.join(map(repr, WAYS))}")
@@ -123,6 +128,15 @@ def rounding(spline: Spline) -> Any:
     return 8 * (max(spline.degree) + 1) * np.finfo(points.dtype).eps * np.abs(points).max()
 
 
+def tolerance_of(spline: Spline, tolerance: Any) -> Any:
+    """Return a tolerance as a number of at least what rounding explains, or raise."""
+    given = real_numbers(tolerance, "tolerance", ParameterError)
+    given = in_arithmetic_of(spline.coefficients, given, "tolerance", ParameterError)
+    if given.ndim or given < 0:
+        raise ParameterError(f"tolerance {tolerance} given; expected a number of at least 0")
+    return max(given.item(), rounding(spline))
+
+
 def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineSpace]:
     """Return the space wanted for each parameter that is to be converted."""
     if axis is not None:
@@ -131,7 +145,9 @@ def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineS
         axes = list(range(len(spline.spaces)))
     spaces = [target] if isinstance(target, SplineSpace) else list(target) if isinstance(target, list | tuple) else []
     if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
-        raise ParameterError(f"target {target!r} given; expected a SplineSpace, or one a parameter")
+        raise ParameterError(
+            f"target {target!r} given; expected a SplineSpace, one a parameter, 'bezier' or 'monomial'"
+        )
     if len(spaces) != len(axes):
         raise ParameterError(f"{len(spaces)} target spaces given for {len(axes)} parameters; axis=… names a single one")
     return dict(zip(axes, spaces, strict=True))

@@ -8,10 +8,10 @@ import numpy as np
 
 from knotwork.banded import Banded
 from knotwork.conversion.common import breaks_and_copies, common_refinement, embedding, space_over
-from knotwork.conversion.convert import Conversion, by_least_squares, concluded, rounding, solved
+from knotwork.conversion.convert import Conversion, by_least_squares, concluded, solved, tolerance_of
 from knotwork.errors import ParameterError
 from knotwork.least_squares import least_squares
-from knotwork.numbers import Array, exact, in_arithmetic_of, real_numbers, whole
+from knotwork.numbers import Array, exact, whole
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -65,7 +65,7 @@ def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None) 
     space = spline.spaces[axis]
     if times > space.degree:
         raise ParameterError(f"times {times} given; expected at most the degree, {space.degree}")
-    allowed = None if tolerance is None else _allowed(spline, tolerance)
+    allowed = None if tolerance is None else tolerance_of(spline, tolerance)
     if not times:
         return concluded(spline, spline, "lowering")
     values, copies = breaks_and_copies(space)
@@ -79,16 +79,6 @@ def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None) 
             f"given"
         )
     return found
-
-
-def _allowed(spline: Spline, tolerance: Any) -> Any:
-    """Return the tolerance as a number of at least the rounding error, or raise."""
-    given = in_arithmetic_of(
-        spline.coefficients, real_numbers(tolerance, "tolerance", ParameterError), "tolerance", ParameterError
-    )
-    if given.ndim or given < 0:
-        raise ParameterError(f"tolerance {tolerance} given; expected a number of at least 0")
-    return max(given.item(), rounding(spline))
 
 
 def _best(spline: Spline, axis: int, target: SplineSpace) -> Spline:

@@ -1,0 +1,193 @@
+"""From polynomial pieces to the B-spline with the fewest knots (§5.5)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.banded import as_blocks
+from knotwork.conversion.common import space_over
+from knotwork.conversion.convert import Conversion, convert, tolerance_of
+from knotwork.conversion.polynomials import PolynomialPieces, nets_of
+from knotwork.errors import ParameterError, PointError
+from knotwork.insertion.pieces import from_bezier
+from knotwork.knots import sorted_knots
+from knotwork.numbers import Array, exact, numbers, require_finite, whole
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+#: parts of the tolerance tried for the joints, until the whole keeps it
+SHARES = (1, 1 / 4, 1 / 16, 1 / 256, 2.0**-16, 2.0**-32, 0)
+
+
+def from_pieces(
+    pieces: Any,
+    breaks: Any = None,
+    *,
+    basis: str = "bezier",
+    rational: bool = False,
+    periodic: bool = False,
+    smoothness: Any = None,
+    tolerance: Any = None,
+) -> Conversion:
+    """Return the spline with the fewest knots that holds given polynomial pieces.
+
+    Parameters
+    ----------
+    pieces : PolynomialPieces or array_like
+        What `convert` gives for ``"bezier"`` or ``"monomial"``; or coefficients of shape (m, n + 1, d) for a curve of m
+        pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, and so on, without d for numbers.
+    breaks : array_like or tuple of array_like
+        Increasing, one array a parameter; not with `PolynomialPieces`.
+    basis : {"bezier", "monomial"}
+        What the coefficients are: control points, or factors of (t − a)ᵏ, a the start of the interval.
+    rational : bool
+        Whether the last coordinate is a weight, and the others are multiplied by it.
+    periodic : bool
+        Whether the end of a curve is joined to its start.
+    smoothness : int or array_like of int, or a tuple of them, one a parameter; optional
+        How many derivatives are continuous at each break inside (and first, if periodic, at the seam): -1 for a jump,
+        the degree for no knot at all. Found if not given.
+    tolerance : float, optional
+        Largest change allowed, in the units of the points; 0 if smoothness is to be found, otherwise anything goes. In
+        float arithmetic at least the rounding error, 8 (degree + 1) ε max |coordinate|.
+
+    Returns
+    -------
+    Conversion
+        ``spline``, ``bound``, ``exact`` and ``how``, as of `convert`.
+
+    Raises
+    ------
+    KnotError, PointError
+        If breaks or coefficients do not fit.
+    ParameterError
+        If the smoothness makes no sense, or is given and would change more than the tolerance.
+
+    Notes
+    -----
+    Derivatives of order j at a break count as equal if the jth differences of control points that they mean, over the
+    shorter neighbour, differ by no more than the tolerance; in float arithmetic, than 2ʲ times the rounding error. If
+    all joints together change more than the tolerance, a smaller part of it is given to each. One knot left at every
+    break keeps the conversion stable (Theorem 5.6.2).
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> parabolas = [[0, 0.5, 1], [1, 1.5, 1]]
+    >>> found = kw.from_pieces(parabolas, [0, 1, 2])
+    >>> found.spline.space.knots.tolist(), found.spline.points.tolist()
+    ([0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0], [0.0, 0.5, 1.5, 1.0])
+    """
+    given = _given(pieces, breaks, basis, rational)
+    spline = from_bezier(nets_of(given), given.breaks, given.rational)
+    if periodic:
+        spline = _closed(spline)
+    allowed = tolerance_of(spline, 0 if tolerance is None else tolerance)
+    if smoothness is not None:
+        found = convert(
+            spline, [_smooth(s, o) for s, o in zip(spline.spaces, _orders(spline, smoothness), strict=True)]
+        )
+        if tolerance is not None and found.bound > allowed:
+            raise ParameterError(
+                f"smoothness {smoothness} would change the pieces by up to {float(found.bound):.6g}; tolerance "
+                f"{tolerance} given"
+            )
+        return found
+    for share in SHARES:
+        orders = [_found(spline, axis, share * allowed) for axis in range(len(spline.spaces))]
+        spaces = [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)]
+        for how in ("auto", "least-squares"):
+            found = convert(spline, spaces, how=how)
+            if found.bound <= allowed:
+                return found
+    return found
+
+
+def _given(pieces: Any, breaks: Any, basis: str, rational: bool) -> PolynomialPieces:
+    """Return what was given as pieces with checked breaks."""
+    if isinstance(pieces, PolynomialPieces):
+        if breaks is not None:
+            raise ParameterError("breaks given twice: PolynomialPieces have theirs")
+        return pieces
+    if breaks is None:
+        raise ParameterError("no breaks given; expected one more than there are pieces")
+    P = numbers(pieces, "pieces", PointError)
+    require_finite(P, "pieces", PointError)
+    vectors = tuple(sorted_knots(x, "breaks") for x in (breaks if isinstance(breaks, tuple) else (breaks,)))
+    if any(v.dtype == object for v in (P, *vectors)):
+        P, *rest = (v if v.dtype == object else exact(v, "pieces", PointError) for v in (P, *vectors))
+        vectors = tuple(rest)
+    return PolynomialPieces(P, vectors if len(vectors) > 1 else vectors[0], basis, rational)
+
+
+def _closed(spline: Spline) -> Spline:
+    """Return a curve as one that is periodic and may jump at every break."""
+    space = spline.space
+    n, x = space.degree, space.breaks
+    nets = spline.coefficients[_every(space)]
+    knots = np.append(np.repeat(x[:-1], n + 1), x[-1:])
+    return spline.with_axis(0, SplineSpace(n, knots, periodic=True), nets)
+
+
+def _breaks(space: SplineSpace) -> Array:
+    """Return where pieces meet: the breaks inside, or those of the half-open period."""
+    return space.breaks[:-1] if space.periodic else space.breaks[1:-1]
+
+
+def _smooth(space: SplineSpace, orders: Array) -> SplineSpace:
+    """Return the space of the same pieces with so many continuous derivatives where they meet."""
+    copies = np.maximum(space.degree - orders, 1 if space.periodic else 0)
+    if space.periodic:
+        copies[1:] = space.degree - orders[1:]
+    return space_over(space.degree, space.domain, _breaks(space), copies, space.periodic)
+
+
+def _orders(spline: Spline, smoothness: Any) -> list[Array]:
+    """Return the smoothness at each break of each parameter, or raise."""
+    k = len(spline.spaces)
+    each = smoothness if isinstance(smoothness, tuple) and k > 1 else (smoothness,) * k
+    if len(each) != k:
+        raise ParameterError(f"smoothness for {len(each)} parameters given; expected {k}")
+    orders = []
+    for space, values in zip(spline.spaces, each, strict=True):
+        count = len(_breaks(space))
+        listed = list(values) if hasattr(values, "__len__") else [values] * count
+        if len(listed) != count:
+            raise ParameterError(f"smoothness at {len(listed)} breaks given; pieces meet at {count}")
+        checked = [whole(value, "smoothness", -1, ParameterError) for value in listed]
+        if max(checked, default=-1) > space.degree:
+            raise ParameterError(f"smoothness {max(checked)} given; expected at most the degree, {space.degree}")
+        orders.append(np.array(checked, int))
+    return orders
+
+
+def _found(spline: Spline, axis: int, allowed: Any) -> Array:
+    """Return how many derivatives are continuous at each break of one parameter, -1 where there is a jump."""
+    space = spline.spaces[axis]
+    n, x = space.degree, space.breaks
+    P = as_blocks(spline.coefficients, axis)[:, _every(space)]
+    nets = P.reshape(P.shape[0], len(x) - 1, n + 1, P.shape[2])
+    size = np.abs(P).max(initial=0)
+    length = x[1:] - x[:-1]
+    left, right = np.arange(len(x) - 2), np.arange(1, len(x) - 1)
+    if space.periodic:
+        left, right = np.append(len(x) - 2, left), np.append(0, right)
+    short = np.minimum(length[left], length[right])
+    order, smooth = np.full(len(left), -1), np.ones(len(left), bool)
+    rounded = 0 if P.dtype == object else 8 * (n + 1) * np.finfo(P.dtype).eps * size
+    for j in range(n + 1):
+        scale = [((short / length[side]) ** j)[None, :, None] for side in (left, right)]
+        jump = np.abs(nets[:, left, -1] * scale[0] - nets[:, right, 0] * scale[1]).max(axis=(0, 2), initial=0)
+        smooth &= jump <= max(allowed, 2**j * rounded)
+        order[smooth] = j
+        nets = nets[:, :, 1:] - nets[:, :, :-1]
+    return order
+
+
+def _every(space: SplineSpace) -> Array:
+    """Return the index of each control point of each piece, in Bézier form."""
+    t, n = space.knots, space.degree
+    last = np.searchsorted(t, space.breaks[:-1], "right") - 1
+    return (last[:, None] - n + np.arange(n + 1)).reshape(-1)
