@@ -87,4 +87,5 @@ def _matrix(n: int, backwards: bool, in_fractions: bool) -> Array:
     bases = bernstein(n, zero, zero + 1), monomial(n, zero)
     given, wanted = reversed(bases) if backwards else bases
     M: Array = change_basis(Curve(given, unit), wanted).control
-    return M / binomial if backwards else M * binomial[:, None]
+    M = M / binomial if backwards else M * binomial[:, None]
+    return M
