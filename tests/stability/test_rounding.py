@@ -119,6 +119,8 @@ def test_bad_input():
     space = kw.SplineSpace.bezier(1, [0, 1])
     with pytest.raises(KnotError, match="does not refine"):
         relative_error_bound(kw.Spline(space, [0.0, 1]), kw.SplineSpace.bezier(1, [0, 2]))
+    with pytest.raises(KnotError, match=r"refined 0\.5 given; expected a SplineSpace"):
+        relative_error_bound(kw.Spline(space, [0.0, 1]), 0.5)
     with pytest.raises(PointError, match="precision is not known; expected floats or Fractions"):
         relative_error_bound(kw.Spline(space, [mpmath.mpf(1), mpmath.mpf(2)]), space.with_knots(0.5))
     with pytest.raises(ParameterError, match="2 parameters has no single space"):

@@ -18,7 +18,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from knotwork.errors import PointError
+from knotwork.errors import KnotError, PointError
 from knotwork.insertion.insert import missing_knots, refine_to
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -61,6 +61,8 @@ def relative_error_bound(spline: Spline, refined: SplineSpace) -> float:
     >>> kw.stability.relative_error_bound(f, f.space.with_knots([0.25, 0.5])) < 1e-14
     True
     """
+    if not isinstance(refined, SplineSpace):
+        raise KnotError(f"refined {refined!r} given; expected a SplineSpace, such as spline.space.with_knots(…)")
     new = missing_knots(spline.space, refined)
     c = spline.coefficients
     if c.dtype == object:
