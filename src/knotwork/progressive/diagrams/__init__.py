@@ -1,0 +1,6 @@
+"""Diagrams of the triangular and tetrahedral schemes, drawn from the procedures themselves."""
+
+from knotwork.progressive.diagrams.drawing import Diagram
+from knotwork.progressive.diagrams.schemes import diagram
+
+__all__ = ["Diagram", "diagram"]
