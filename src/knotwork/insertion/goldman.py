@@ -1,0 +1,81 @@
+"""Goldman's versions of the Oslo algorithm: two triangles for n + 1 knots, or for n + 1 vertices (§4.9)."""
+
+from __future__ import annotations
+
+from knotwork.insertion.forms import copy, kept, level
+from knotwork.insertion.steps import by_intervals, by_segments
+from knotwork.kernel import kernel
+
+
+@kernel
+def ascending(Z, F, t, b, x, n, levels, D):  # type: ignore[no-untyped-def]
+    """Z = left edge and top row of a triangle of x_1, x_2, … over F, which is overwritten: n + 1 points."""
+    for r in range(levels):
+        copy(Z[r], F[0], D)
+        level(F, F, t[r:], b, n - r, x[r], D)
+    for j in range(n - levels + 1):
+        copy(Z[levels + j], F[j], D)
+
+
+@kernel
+def descending(C, t, b, n, x, g, D):  # type: ignore[no-untyped-def]
+    """C = right edge of a triangle of x_g, x_{g-1}, …, x_2 over the last g of n + 1 points: C, which is overwritten."""
+    for r in range(g - 1):
+        level(C, C, t[n - g + 1 + r :], b[n - g + 1 :], g - 1 - r, x[g - 1 - r], D)
+
+
+@kernel
+def in_groups(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+    """Insert up to n + 1 knots at once: two triangles over the same points, smaller ones for a last group (Fig. 4.5, 4.6)."""
+    k = 0
+    while k < m:
+        g = min(n + 1, m - k)
+        for j in range(n + 1):
+            copy(A[0, j], Z[k + j], D)
+        for j in range(g):
+            copy(C[j], Z[k + n - g + 1 + j], D)
+        ascending(Z[k:], A[0], t[k:], b, t[k + n :], n, min(g, n), D)
+        descending(C, t[k:], b, n, t[k + n :], g, D)
+        for j in range(g):
+            copy(Z[k + n + 1 + j], C[j], D)
+        k += g
+
+
+@kernel
+def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+    """Vertices of one new segment: x_n … x_1 go in, then x_{n+1} … off the right edge (Fig. 4.7)."""
+    for r in range(n):
+        level(F, F, a[r:], b, n - r, x[n - 1 - r], D)
+    for s in range(k):
+        copy(S[s], F[0], D)
+        if s + 1 < k:
+            level(F, F, x[s:], b, k - 1 - s, x[n + s], D)
+
+
+@kernel
+def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+    """The same, where an argument that is an old knot beside the segment is not put in but kept.
+
+    Of a row B(…, a, b) the points that have the innermost knot of a, or of b, among their arguments are simply kept; so
+    no combination extrapolates.
+    """
+    low = 0
+    for r in range(n):
+        m = n - r
+        if x[m - 1] != a[low + m - 1]:
+            level(F, F, a[low:], b, m, x[m - 1], D)
+            low += 1
+    start = 0
+    for s in range(k):
+        copy(S[s], F[start], D)
+        if s + 1 < k:
+            if kept(x[n + s], b[start]):
+                start += 1
+            else:
+                level(F[start:], F[start:], x[s:], b[start:], k - 1 - s, x[n + s], D)
+
+
+goldman = by_intervals.variant(step=in_groups)
+modified = by_segments.variant(segment=two_triangles)
+modified_improved = by_segments.variant(segment=two_triangles_improved)
+

@@ -1,0 +1,126 @@
+"""What every method works on: old and new knots in one order, and which vertex is found where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from knotwork.kernel import Kernel, extent
+from knotwork.numbers import Array, empty
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """Old knots U, which may repeat, sorted new knots W inside the domain, and old points P of shape (N, d)."""
+
+    U: Array
+    W: Array
+    P: Array
+    n: int
+
+    @cached_property
+    def ends(self) -> tuple[int, int]:
+        """The first and the last interval of the domain that is not empty."""
+        U, n, N = self.U, self.n, len(self.P)
+        return int(np.searchsorted(U, U[n], "right")) - 1, int(np.searchsorted(U, U[N], "left")) - 1
+
+    @cached_property
+    def gap(self) -> Array:
+        """The number of new knots in each interval [U_q, U_{q+1}); those at the end of the domain are in the last."""
+        q = np.clip(np.searchsorted(self.U, self.W, "right") - 1, *self.ends)
+        return np.bincount(q, minlength=len(self.U))
+
+    @cached_property
+    def is_old(self) -> Array:
+        """Whether refined knot i is an old one."""
+        before = np.concatenate([[0], np.cumsum(self.gap)[:-1]])
+        mask = np.zeros(len(self.U) + len(self.W), bool)
+        mask[np.arange(len(self.U)) + before] = True
+        return mask
+
+    @cached_property
+    def T(self) -> Array:
+        """The refined knots."""
+        T = np.empty(len(self.is_old), self.U.dtype)
+        T[self.is_old], T[~self.is_old] = self.U, self.W
+        return T
+
+    @cached_property
+    def old(self) -> Array:
+        """The old vertex that new vertex i is, or -1: all its knots i + 1 … i + n are old."""
+        count = np.concatenate([[0], np.cumsum(self.is_old)])
+        i = np.arange(len(self.P) + len(self.W))
+        return np.where(count[i + self.n + 1] - count[i + 1] == self.n, count[i + 1] - 1, -1)
+
+    @cached_property
+    def where(self) -> Array:
+        """The leftmost interval that new vertex i affects (inside the domain): that of refined knot i."""
+        i = len(self.P) + len(self.W)
+        return np.clip(np.searchsorted(self.U, self.T[:i], "right") - 1, *self.ends)
+
+    @cached_property
+    def groups(self) -> tuple[Array, Array]:
+        """The first vertices of groups of up to n + 1 that affect one new segment, and its old interval; -1: all are old."""
+        old, n, T = self.old.tolist(), self.n, self.T.tolist()
+        interval = np.clip(np.searchsorted(self.U, self.T, "right") - 1, *self.ends).tolist()
+        lo, hi = self.U[self.n], self.U[len(self.P)]
+        first, where, i = [0], [], 0
+        while i < len(old):
+            k = i + n  # the segment [T_k, T_{k+1}) that all vertices of the group affect
+            while k > i and not (k < len(old) and lo <= T[k] < T[k + 1] <= hi):
+                k -= 1
+            k = min(max(k, i), len(old) - 1)
+            where.append(interval[k] if min(old[i : k + 1]) < 0 else -1)
+            first.append(k + 1)
+            i = k + 1
+        return np.array(first), np.array(where, np.intp)
+
+    @property
+    def intervals(self) -> int:
+        """How many old intervals get new knots."""
+        return int(np.count_nonzero(self.gap))
+
+    @property
+    def changed(self) -> int:
+        """How many new vertices are no old ones: r in the book's counts (§4.15)."""
+        return int(np.count_nonzero(self.old < 0))
+
+    # ---- running a kernel of `steps` ------------------------------------------------------------------------------
+
+    def _arrays(self) -> tuple[Array, Array, Array, Array, Any]:
+        """Return the result and what the kernels use: rows A and C of n + 1 points, a stack, the number of coordinates."""
+        (N, d), n, dtype = self.P.shape, self.n, self.P.dtype
+        out = empty((N + len(self.W), d), dtype)
+        rows = n.bit_length() + 4
+        return out, np.empty((rows, n + 1, d), dtype), np.empty((n + 1, d), dtype), np.empty((rows, 2), np.intp), extent(d)
+
+    def by_intervals(self, method: Kernel) -> Array:
+        """Run a knot-oriented method."""
+        out, A, C, stack, D = self._arrays()
+        K = np.empty(2 * self.n + int(self.gap.max(initial=0)), self.U.dtype)
+        method(out, self.P, self.U, self.T, self.gap, self.n, A, C, stack, K, D)
+        return out
+
+    def by_vertices(self, method: Kernel) -> Array:
+        """Run a vertex-oriented method."""
+        out, A, C, _, D = self._arrays()
+        method(out, self.P, self.U, self.T, self.old, self.where, self.n, A[0], C, D)
+        return out
+
+    def by_vertices_of_triangles(self, method: Kernel) -> Array:
+        """Run a vertex-oriented method that keeps the whole division triangle of an interval."""
+        out, A, C, _, D = self._arrays()
+        F = np.empty((self.n + 1, *C.shape), C.dtype)
+        method(out, self.P, self.U, self.T, self.old, self.where, self.n, F, C, D)
+        return out
+
+    def by_segments(self, method: Kernel) -> Array:
+        """Run a segment-oriented method."""
+        out, A, C, stack, D = self._arrays()
+        first, where = self.groups
+        F, R = np.empty_like(C), np.empty_like(C)
+        method(out, self.P, self.U, self.T, self.old, first, where, self.n, F, R, A, C, stack, D)
+        return out

@@ -1,0 +1,84 @@
+"""The three perspectives of §4.4: what drives the primitive step of a method over a whole spline.
+
+A knot-oriented method inserts the new knots of one interval and goes on with the refined spline; a vertex-oriented one
+finds one new vertex from old ones; a segment-oriented one up to n + 1 vertices of one new segment.
+"""
+
+from __future__ import annotations
+
+from knotwork.insertion.forms import copy, finish, frame
+from knotwork.kernel import kernel
+
+
+@kernel
+def step(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+    """Z[i] = B(t_{i+1} …, b_1 …) for 0 <= i <= n + m, from Z[0 … n] over t_1 … t_n, b: bound by a method."""
+
+
+@kernel
+def by_intervals(out, P, U, T, gap, n, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+    """Insert interval by interval, from the left: out[i … i + n] are the points over the refined knots so far, then U.
+
+    There are gap[q] new knots in [U_q, U_{q+1}).
+    """
+    for j in range(n + 1):
+        copy(out[j], P[j], D)
+    i = 0
+    for q in range(n, len(P)):
+        m = gap[q]
+        if m > 0:
+            frame(out[i:], T[i + 1 :], U[q + 1 :], n, D)
+            step(out[i:], T[i + 1 :], U[q + 1 :], n, m, A, C, stack, K, D)
+            i += m
+            finish(out[i:], T[i + 1 :], U[q + 1 :], P[q], n, D)
+        i += 1
+        if q + 1 < len(P):
+            copy(out[i + n], P[q + 1], D)
+
+
+@kernel
+def vertex(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
+    """S = B(x_1 … x_n) from F over a, b, which is overwritten: bound by a method."""
+
+
+@kernel
+def by_vertices(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untyped-def]
+    """Find each new vertex from the old ones of interval where[i]; it is the old vertex old[i] where that is not negative."""
+    q = -1
+    for i in range(len(out)):
+        if old[i] >= 0:
+            copy(out[i], P[old[i]], D)
+        else:
+            if where[i] != q:
+                q = where[i]
+                for j in range(n + 1):
+                    copy(F[j], P[q - n + j], D)
+                frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
+            for j in range(n + 1):
+                copy(R[j], F[j], D)
+            vertex(out[i], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, D)
+
+
+@kernel
+def segment(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+    """S[s] = B(x_{s+1} … x_{s+n}) for 0 <= s < k, from F over a, b, which is overwritten: bound by a method."""
+
+
+@kernel
+def by_segments(out, P, U, T, old, first, where, n, F, R, A, C, stack, D):  # type: ignore[no-untyped-def]
+    """Find the vertices first[g] … first[g + 1] - 1, which affect one new segment, from the old ones of where[g]."""
+    q = -1
+    for g in range(len(where)):
+        i, k = first[g], first[g + 1] - first[g]
+        if where[g] < 0:
+            for s in range(i, i + k):
+                copy(out[s], P[old[s]], D)
+        else:
+            if where[g] != q:
+                q = where[g]
+                for j in range(n + 1):
+                    copy(F[j], P[q - n + j], D)
+                frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
+            for j in range(n + 1):
+                copy(R[j], F[j], D)
+            segment(out[i:], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], k, n, A, C, stack, D)
