@@ -30,7 +30,9 @@ def sorted_knots(knots: Any, what: str = "knots") -> Array:
 
 def some_knots(knots: Any, what: str, like: Array) -> Array:
     """Return a number or a flat list of knots, in any order, sorted and in the arithmetic of `like`."""
-    x = np.atleast_1d(in_arithmetic_of(like, real_array(knots, what, KnotError), what, KnotError))
+    x = in_arithmetic_of(like, real_array(knots, what, KnotError), what, KnotError)
+    if x.ndim == 0:
+        x = x.reshape(1)
     if x.ndim != 1:
         raise KnotError(f"{what}: an array of shape {x.shape} given; expected a number or a flat list")
     if in_order(x):
