@@ -71,13 +71,16 @@ def mathtext(text: str) -> str:
 
 def spans(text: str, size: float) -> str:
     """Return a label as the inside of an SVG text element of this font size."""
-    result, below = "", 0.0
+    result, below, gap = "", 0.0, 0.0
     for part in parts(text):
+        if part.text.isspace():  # a shift, as spaces between spans are not safe from being dropped
+            gap += part.width * size
+            continue
         lowered = part.lowered * size
         style = ' font-style="italic"' if part.italic else ""
         style += f' font-size="{SMALL * size:g}"' if part.lowered else ""
+        style += f' dx="{gap:.3g}"' if gap else ""
         style += f' dy="{lowered - below:.3g}"' if lowered != below else ""
-        letters = escape(part.text).replace(" ", "\N{NO-BREAK SPACE}")
-        result += f"<tspan{style}>{letters}</tspan>" if style else letters
-        below = lowered
+        result += f"<tspan{style}>{escape(part.text)}</tspan>" if style else escape(part.text)
+        below, gap = lowered, 0.0
     return result

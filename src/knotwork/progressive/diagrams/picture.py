@@ -57,7 +57,9 @@ def picture(
     step = max(words, letters if level else letters / 0.76)
     height = 4.8 if level else 6.2
 
-    corner, nodes, numbers = _corners(spots, step, height), [], {}
+    corner = _corners(spots, step, height)
+    nodes: list[Node] = []
+    numbers: dict[Spot, int] = {}
     for spot, value in spots.items():
         x, y = corner[spot.panel]
         kind = "result" if value in results else "made" if value.parents else "given"
@@ -83,7 +85,8 @@ def _corners(spots: Collection[Spot], step: float, height: float) -> dict[int, t
             right = 0.0
         lines[-1].append((panel, right - min(columns)))
         right += wide + GAP
-    corners, floor = {}, 0.0
+    corners: dict[int, tuple[float, float]] = {}
+    floor = 0.0
     for line in lines:
         panels = [panel for panel, _ in line]
         floor -= max(spot.y for spot in spots if spot.panel in panels) * height

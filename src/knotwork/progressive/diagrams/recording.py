@@ -50,7 +50,7 @@ def combined(P: Value, Q: Value, a: Knot, b: Knot, u: Knot, order: list[Knot]) -
     if denominator == 0:
         raise KnotError(f"{label(a)} and {label(b)} cannot give way to {label(u)}: expected knots that differ")
     sign = -1 if denominator == -1 else 1  # which is not worth leaving out
-    factors = sign * crossed(pairs[1], pairs[2]), sign * crossed(pairs[2], pairs[0])
+    factors: Any = sign * crossed(pairs[1], pairs[2]), sign * crossed(pairs[2], pairs[0])
     return Value(tuple(sorted(arguments, key=order.index)), (P, Q), factors)
 
 
