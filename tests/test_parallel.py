@@ -9,6 +9,7 @@ import pytest
 
 import knotwork as kw
 from knotwork import parallel
+from knotwork.errors import KnotError
 
 RNG = np.random.default_rng(0)
 CURVE = kw.curve(RNG.standard_normal((90_000, 3)))
@@ -50,7 +51,9 @@ def parts(monkeypatch):
 
 
 def bits(result):
-    return (result.coefficients if isinstance(result, kw.Spline) else result).tobytes()
+    if isinstance(result, kw.Spline):
+        return [array.tobytes() for array in (result.coefficients, *(space.knots for space in result.spaces))]
+    return result.tobytes()
 
 
 @pytest.mark.parametrize("job", JOBS)
@@ -62,6 +65,17 @@ def test_the_number_of_threads_does_not_matter(job, parts, monkeypatch):
         found.append(bits(JOBS[job]()))
         assert max(parts) == threads
     assert found[0] == found[1] == found[2]
+
+
+def test_a_knot_too_often_is_refused_wherever_the_parts_meet(monkeypatch):
+    monkeypatch.setenv("KNOTWORK_THREADS", "3")
+    refined = kw.insert(CURVE, U).space
+    for edge in (refined.dimension // 3, 2 * refined.dimension // 3):
+        for x in refined.knots[edge - 2 : edge + 7]:
+            with pytest.raises(KnotError, match=f"knot {x} has multiplicity 5; degree 3 allows at most 4"):
+                kw.insert(CURVE, np.append(U, [x] * 4))
+            full = kw.insert(CURVE, np.append(U, [x] * 3)).space
+            assert (full.multiplicity(x), full) == (4, CURVE.space.with_knots(np.append(U, [x] * 3)))
 
 
 def test_parts_cover_each_row_once(monkeypatch):
