@@ -6,6 +6,7 @@ One polynomial segment of degree n over 2n homogeneous knots, which need be neit
 from knotwork.progressive.bases import bernstein, bspline_segment, hermite_primal, monomial, newton_dual, power
 from knotwork.progressive.change import METHODS, Insertion, change_basis, insert
 from knotwork.progressive.curve import Curve
+from knotwork.progressive.diagrams import FIGURES, Diagram, diagram, figure
 from knotwork.progressive.homogeneous import DELTA
 from knotwork.progressive.matching import Match, matches
 from knotwork.progressive.newton import divided_differences, evenly_spaced, newton_dual_by_differences
@@ -14,8 +15,10 @@ from knotwork.progressive.sequence import Sequence
 
 __all__ = [
     "DELTA",
+    "FIGURES",
     "METHODS",
     "Curve",
+    "Diagram",
     "Insertion",
     "Match",
     "Sequence",
@@ -23,8 +26,10 @@ __all__ = [
     "blossom",
     "bspline_segment",
     "change_basis",
+    "diagram",
     "divided_differences",
     "evenly_spaced",
+    "figure",
     "hermite_primal",
     "insert",
     "matches",

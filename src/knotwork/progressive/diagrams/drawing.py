@@ -76,6 +76,7 @@ class Edge:
     end: int
     label: str = ""
     at: float = 0.5
+    kind: str = "arrow"
 
 
 @dataclass(frozen=True)
@@ -173,7 +174,9 @@ class Diagram:
         for edge in self.edges:
             x0, y0, x1, y1 = self._ends(edge)
             tip = " L".join(at(x, y) for x, y in _arrowhead(x0, y0, x1, y1))
-            yield f'<path d="M{at(x0, y0)} L{at(x1, y1)}" stroke="{LINE}"/><path d="M{tip}Z" fill="{LINE}"/>'
+            ink, stroke = _STROKES[edge.kind]
+            yield f'<path d="M{at(x0, y0)} L{at(x1, y1)}" stroke="{ink}" stroke-width="{stroke}"/>'
+            yield f'<path d="M{tip}Z" fill="{ink}"/>'
         for edge in self.edges:
             if edge.label:
                 box = self.label_box(edge)
@@ -185,6 +188,7 @@ class Diagram:
             else:
                 x, y = at(node.x, node.y).split()
                 yield f'<circle cx="{x}" cy="{y}" r="{0.2 * SIZE:g}" fill="{ink}"/>'
+                yield rectangle(node.box, 'fill="#ffffff"')
             if node.text:
                 yield text(node.text, node.box, ink, 1 if node.offset is None else LESSER)
             if node.name:
@@ -208,18 +212,19 @@ class Diagram:
 
         for path in self.paths:
             ink, stroke = _STROKES[path.kind]
-            axes.plot(*zip(*path.points, strict=True), color=ink, linewidth=stroke, zorder=1)
+            axes.plot(*zip(*path.points, strict=True), color=ink, linewidth=stroke * points / SIZE, zorder=1)
         for edge in self.edges:
             x0, y0, x1, y1 = self._ends(edge)
-            axes.plot([x0, x1], [y0, y1], color=LINE, linewidth=points / 14, zorder=1)
-            axes.fill(*zip(*_arrowhead(x0, y0, x1, y1), strict=True), color=LINE, linewidth=0, zorder=1)
+            ink, stroke = _STROKES[edge.kind]
+            axes.plot([x0, x1], [y0, y1], color=ink, linewidth=stroke * points / SIZE, zorder=1)
+            axes.fill(*zip(*_arrowhead(x0, y0, x1, y1), strict=True), color=ink, linewidth=0, zorder=1)
         for edge in self.edges:
             if edge.label:
                 text(edge.label, self.label_box(edge), INK, LESSER, facecolor="white", linewidth=0, pad=points / 8)
         for node in self.nodes:
             ink, fill, rim = _LOOKS[node.kind]
             if node.offset is None:
-                look = {"facecolor": fill, "edgecolor": rim, "linewidth": points / 14}
+                look = {"facecolor": fill, "edgecolor": rim, "linewidth": points / SIZE}
                 left, bottom, right, top = node.box
                 axes.fill([left, right, right, left], [bottom, bottom, top, top], **look, zorder=2)
             else:
@@ -233,7 +238,8 @@ class Diagram:
 
 #: letters, frame and rim of a node
 _LOOKS = {"given": (INK, GIVEN, LINE), "made": (INK, "#ffffff", LINE), "result": (RESULT, PALE, RESULT)}
-_STROKES = {"curve": (INK, 2.0), "polygon": (LINE, 1.2), "leg": (RESULT, 1.0)}
+#: colour and width, in pixels, of lines
+_STROKES = {"arrow": (LINE, 1.0), "curve": (INK, 2.0), "polygon": (LINE, 1.2), "leg": (RESULT, 1.0)}
 
 
 def _way_out(node: Node, other: Node) -> tuple[float, float]:

@@ -95,7 +95,7 @@ def _dense(points: tuple[tuple[float, float], ...], step: float = 0.2) -> Iterab
 
 
 def tetrahedron(n: int) -> Diagram:
-    """Draw Sablonnière's tetrahedron from above: height raises a point by less than a step along the base does."""
+    """Draw Sablonnière's tetrahedron from above: its lateral face red, the base and what is parallel to it grey."""
     t, u = knots(names("t", 1, 2 * n)), knots(names("u", 1, 2 * n))
     P = given(t, n)
     with recording([*t[:n], *u, *t[n:]]) as values:
@@ -104,16 +104,20 @@ def tetrahedron(n: int) -> Diagram:
     base = {tuple(knot) for knot in u[:n]}
     for value in values:
         (x0, y0), (x1, _) = (place[parent] for parent in value.parents)
-        flat = not base.isdisjoint(value.arguments)
-        place[value] = (x0 + x1) / 2 + (0 if flat else 0.9), y0 + (5.0 if flat else 1.8)
+        lateral = base.isdisjoint(value.arguments)
+        place[value] = (x0 + x1) / 2 + (0.9 if lateral else 0), y0 + (1.8 if lateral else 5.0)
     numbers = {value: k for k, value in enumerate(place)}
     nodes = []
     for value, (x, y) in place.items():
         name = f"Q_{{{Q.index(value)}}}" if value in Q else "" if value.parents else f"P_{{{numbers[value]}}}"
         kind = "result" if value in Q else "made" if value.parents else "given"
         nodes.append(Node(x, y, name, kind=kind, offset=(0.0, -1.0) if kind == "given" else (1.1, 0.2)))
-    edges = tuple(Edge(numbers[parent], numbers[value]) for value in values for parent in value.parents)
-    return Diagram(tuple(nodes), edges)
+    edges = [
+        Edge(numbers[parent], numbers[value], kind="leg" if base.isdisjoint(value.arguments) else "arrow")
+        for value in values
+        for parent in value.parents
+    ]
+    return Diagram(tuple(nodes), tuple(edges))
 
 
 def square() -> Diagram:
@@ -126,7 +130,7 @@ def square() -> Diagram:
 
 _Q = [f"t_{{q{i}}}" for i in ("−2", "−1", "", "+1", "+2", "+3")]
 _BEZIER = [(0, 0), (5, 15), (22, 17), (28, 2)]
-_SPLINE = [(0, 4), (3, 15), (14, 19), (26, 18), (36, 8), (30, -3)]
+_SPLINE = [(0, -4), (0, 10), (10, 24), (44, 24), (46, -2), (16, -8)]
 
 #: the figures by their numbers in the book
 FIGURES = {
@@ -148,7 +152,10 @@ FIGURES = {
     "2.2": Figure("The Cox–de Boor–Mansfield recurrence for the cubic basis functions.", lambda: diagram("basis")),
     "2.3": Figure("The blossom of a cubic at any arguments.", lambda: diagram("blossom")),
     "2.4": Figure("Goldman's version of the Oslo algorithm: two triangles.", lambda: diagram("oslo")),
-    "2.5a": Figure("Sablonnière's tetrahedron from above.", lambda: tetrahedron(3)),
+    "2.5a": Figure(
+        "Sablonnière's tetrahedron from above: up the lateral face (red), then parallel to the base.",
+        lambda: tetrahedron(3),
+    ),
     "2.5b": Figure(
         "Sablonnière's tetrahedron for a cubic: the lateral face, the base, and the sections parallel to the base.",
         lambda: diagram("sablonniere"),
