@@ -1,71 +1,109 @@
 """Degree elevation: the same spline, one degree higher, exactly.
 
 The blossom F of a polynomial seen as of degree n + 1 is the mean of its blossom f of degree n over the n + 1 ways to
-leave one argument out. Control point i of the raised spline is F at n + 1 neighbours among the raised knots; each
-term is a blossom at knots of a refinement, so every row is a mean of rows of knot insertion: weights that are not
-negative and sum to one.
+leave one argument out. Control point i of the raised spline is F at n + 1 neighbours among the raised knots. Without
+the last of them, or without the first, the others are neighbours too: there f is a control point of the refinement by
+these knots. Every term is a blossom at knots of a refinement, so every row is a mean of rows of knot insertion: weights
+that are not negative and sum to one.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from knotwork.banded import Banded
+from knotwork.banded import Banded, along, as_blocks, combination
 from knotwork.errors import ParameterError
-from knotwork.insertion.merge import discrete_bsplines
-from knotwork.kernel import kernel
-from knotwork.knots import distinct, merged, old_among, old_is_next
-from knotwork.numbers import empty, require_room, whole
+from knotwork.insertion.merge import BLOCK, discrete_bsplines
+from knotwork.kernel import extent, kernel
+from knotwork.knots import merged, old_among, old_is_next
+from knotwork.numbers import Array, empty, require_room, whole
+from knotwork.parallel import in_parts
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 
 @kernel
-def elevation_rows(U, W, stop, n, lo, start, E, x, row):  # type: ignore[no-untyped-def]
-    """Rows lo, lo+1, … of the matrix that raises the degree from n to n + 1.
+def insertion_row(U, lu, hu, W, lw, hw, R, i):  # type: ignore[no-untyped-def]
+    """R[i] = weights of the blossom at U[lu … hu-1] and W[lw … hw-1]; return their first column and how many follow.
 
-    W holds each break once, U and W merged are the raised knots. The window of n + 1 of them has the old knots
-    U[lu … hu-1] and the new ones W[lw … hw-1]; leaving out a value that occurs m times in it counts m times.
+    A new knot equal to the old one before the run stands for it.
     """
-    lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n + 1)
-    lw, hw = lo - lu, lo + n + 1 - hu
-    for i in range(len(start)):
-        if old_is_next(U, lu, W, lw, stop):
-            lu += 1
-        else:
-            lw += 1
-        most = 0  # new knots left after one value is left out: all, unless the last of the window is new
-        if old_is_next(U, hu, W, hw, stop):
-            hu += 1
-        else:
-            hw += 1
-            most = -1
-        most += hw - lw
-        start[i] = lu - 1 - most
-        for r in range(n + 2):
-            E[i, r] = U[0] - U[0]
-        old, new = lu, lw
-        while old < hu or new < hw:
-            # the next value of the window, and its old and new copies
-            value = U[old] if new >= hw or (old < hu and U[old] <= W[new]) else W[new]
-            copies, fresh = 0, 0
-            while old < hu and U[old] == value:
-                old += 1
-                copies += 1
-            while new < hw and W[new] == value:
+    if lw < hw and W[lw] == U[lu - 1]:
+        lu -= 1
+        lw += 1
+    discrete_bsplines(U, lu, hu, W, lw, hw - lw, R, i)
+    return lu - 1 - (hw - lw), hw - lw
+
+
+@kernel
+def add_row(E, i, column, R, k, v, share):  # type: ignore[no-untyped-def]
+    """Add share · R[k, 0 … v] to E[i] from a column on."""
+    for r in range(v + 1):
+        E[i, column + r] += share * R[k, r]
+
+
+@kernel
+def raise_degree(T, U, W, n, lo, P, out, start, count, E, R, x, D):  # type: ignore[no-untyped-def]
+    """out[a, i] = control point lo + i of degree n + 1, a block of rows of the matrix at a time.
+
+    T is U and W merged, the raised knots; W holds each break once. Of each row of a block, `start` is the first column,
+    `count` how many follow, and E has the weights. R: room for the rows of insertion at T[i+1 … i+n] and
+    T[i+2 … i+n+1], and another; x for knots.
+    """
+    stop = len(U)
+    lu, hu = old_among(U, W, stop, lo + 1), old_among(U, W, stop, lo + n + 1)
+    lw, hw = lo + 1 - lu, lo + n + 1 - hu
+    here = 0
+    first, v = insertion_row(U, lu, hu, W, lw, hw, R, here)
+    for top in range(0, out.shape[1], len(start)):
+        block = min(len(start), out.shape[1] - top)
+        for i in range(block):
+            a, b = lo + top + i + 1, lo + top + i + n + 1
+            if old_is_next(U, hu, W, hw, stop):
+                hu += 1
+            else:
+                hw += 1
+            old, new = lu, lw  # T[a … b] is U[old … hu-1] and W[new … hw-1]
+            if new < hw and W[new] == U[old - 1]:
+                old -= 1
                 new += 1
-                fresh += 1
-            # leave out a new copy; where the window cuts those off, the last old one
-            left_out = min(fresh, 1)
-            v = 0
-            for k in range(lw, hw):
-                if k != new - left_out or fresh == 0:
-                    x[v] = W[k]
-                    v += 1
-            discrete_bsplines(U, lu, hu - 1 + left_out, x, 0, v, row, 0)
-            column = lu - 1 - v - start[i]
-            for r in range(v + 1):
-                E[i, column + r] += (copies + fresh) * row[0, r] / (n + 1)
+            if old_is_next(U, lu, W, lw, stop):
+                lu += 1
+            else:
+                lw += 1
+            next_first, next_v = insertion_row(U, lu, hu, W, lw, hw, R, 1 - here)
+            start[i], count[i] = first, v if T[a] == T[b] else next_first + next_v - first
+            zero = U[0] - U[0]
+            for r in range(count[i] + 1):
+                E[i, r] = zero
+            j = a
+            while j <= b:
+                copies = 1
+                while j + copies <= b and T[j + copies] == T[j]:
+                    copies += 1
+                share = (zero + copies) / (n + 1)
+                if j + copies > b:  # the last value is left out
+                    add_row(E, i, 0, R, here, v, share)
+                elif j == a:
+                    add_row(E, i, next_first - first, R, 1 - here, next_v, share)
+                else:  # one in between: the window holds its new copy
+                    m = 0
+                    for k in range(new, hw):
+                        if W[k] != T[j]:
+                            x[m] = W[k]
+                            m += 1
+                    discrete_bsplines(U, old, hu, x, 0, m, R, 2)
+                    add_row(E, i, old - 1 - m - first, R, 2, m, share)
+                j += copies
+            first, v, here = next_first, next_v, 1 - here
+            if len(P) == 1:
+                combination(out, 0, top + i, P, start[i], E, i, count[i], D)
+        if len(P) > 1:
+            for a in range(len(P)):
+                for i in range(block):
+                    combination(out, a, top + i, P, start[i], E, i, count[i], D)
 
 
 def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
@@ -88,40 +126,70 @@ def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
     axis = spline.axis(axis)
     times = whole(times, "times", 0, ParameterError)
     space = spline.spaces[axis]
-    rows = space.dimension + times * len(space.breaks)
-    require_room((rows, spline.coefficients.size // space.dimension), spline.coefficients.dtype)
+    require_room((space.dimension + times, spline.coefficients.size // space.dimension), spline.coefficients.dtype)
     for _ in range(times):
         spline = _once(spline, axis)
     return spline
 
 
 def _once(spline: Spline, axis: int) -> Spline:
-    space = spline.spaces[axis]
-    target, matrix = raised(space)
-    return spline.with_axis(axis, target, matrix.apply(spline.coefficients, axis))
+    space, P = spline.spaces[axis], as_blocks(spline.coefficients, axis)
+    target, T, W, lo = _raised_knots(space)
+    t, zero = space.unrolled
+    if space.periodic:
+        P = np.ascontiguousarray(P[:, space.wrapped(-zero, len(t) - space.degree - 1)])
+    A, _, B = P.shape
+    rows, n = target.dimension, space.degree
+    out = empty((A, rows, B), P.dtype)
+
+    def part(a: int, b: int, first: int, last: int) -> None:
+        some = _room(max(1, min(BLOCK, last - first)), n, t.dtype)
+        raise_degree(T, t, W, n, lo + first, P[a:b], out[a:b, first:last], *some, extent(B))
+
+    if A == 1:
+        in_parts(lambda first, last: part(0, 1, first, last), rows, out.size)
+    else:
+        in_parts(lambda a, b: part(a, b, 0, rows), A, out.size)
+    return spline.with_axis(axis, target, along(out, spline.coefficients, axis))
 
 
 def raised(space: SplineSpace) -> tuple[SplineSpace, Banded]:
     """Return the space of one degree more that holds `space`, and the matrix that takes control points there."""
+    target, T, W, lo = _raised_knots(space)
+    t, zero = space.unrolled
+    start, count, E, *some = _room(target.dimension, space.degree, t.dtype)
+    none = np.empty((0, 0, 1)), np.empty((0, target.dimension, 1))
+    raise_degree(T, t, W, space.degree, lo, *none, start, count, E, *some, extent(1))
+    if space.periodic:
+        start = (start - zero) % space.dimension
+    return target, Banded.packed(start, count, E, space.dimension, wraps=space.periodic)
+
+
+def _room(rows: int, n: int, dtype: np.dtype[Any]) -> tuple[Array, ...]:
+    """Return arrays for as many rows of the matrix, and what their computation needs."""
+    start, count = np.empty(rows, np.intp), np.empty(rows, np.intp)
+    return start, count, empty((rows, n + 2), dtype), np.empty((3, n + 1), dtype), np.empty(n + 1, dtype)
+
+
+def _raised_knots(space: SplineSpace) -> tuple[SplineSpace, Array, Array, int]:
+    """Return the raised space, the unrolled knots merged with each break once, these, and the first raised function."""
     n = space.degree
     t, zero = space.unrolled
     if space.periodic:
-        once = distinct(space.knots[:-1])[0]
+        once = _once_each(space.knots[:-1])
         knots = np.append(merged(space.knots[:-1], once), space.knots[-1:])
-        breaks, before = space.images(once)
-        lo, rows = zero + before, len(knots) - 1
-    else:
-        # the functions of degree n + 1 that live in the domain
-        breaks = distinct(t)[0]
-        T = merged(t, breaks)
-        a, b = space.domain
-        lo = int(np.searchsorted(T, a, "right")) - n - 2
-        rows = int(np.searchsorted(T, b, "left")) - lo
-        knots = T[lo : lo + rows + n + 2].copy()
-    start = np.empty(rows, np.intp)
-    E = empty((rows, n + 2), t.dtype)
-    elevation_rows(t, breaks, len(t), n, lo, start, E, np.empty(n + 1, t.dtype), np.empty((1, n + 1), t.dtype))
-    target = SplineSpace.trusted(n + 1, knots, space.periodic)
-    if space.periodic:
-        return target, Banded((start - zero) % space.dimension, E, space.dimension)
-    return target, Banded.packed(start, np.full(rows, n + 1), E, space.dimension)
+        W, before = space.images(once)
+        return SplineSpace.trusted(n + 1, knots, True), merged(t, W), W, zero + before
+    # the functions of degree n + 1 that live in the domain
+    W = _once_each(t)
+    T = merged(t, W)
+    a, b = space.domain
+    lo, end = int(np.searchsorted(T, a, "right")) - n - 2, int(np.searchsorted(T, b, "left")) + n + 2
+    return SplineSpace.trusted(n + 1, T[lo:end].copy()), T, W, lo
+
+
+def _once_each(t: Array) -> Array:
+    """Return sorted knots without repetition."""
+    first = np.ones(len(t), bool)
+    first[1:] = t[1:] != t[:-1]
+    return t[first]

@@ -86,6 +86,6 @@ def _matrix(n: int, backwards: bool, in_fractions: bool) -> Array:
     zero = unit[0, 0] - unit[0, 0]
     bases = bernstein(n, zero, zero + 1), monomial(n, zero)
     given, wanted = reversed(bases) if backwards else bases
-    M: Array = change_basis(Curve(given, unit), wanted).control
-    M = M / binomial if backwards else M * binomial[:, None]
-    return M
+    M = change_basis(Curve(given, unit), wanted).control
+    scaled: Array = M / binomial if backwards else M * binomial[:, None]
+    return scaled

@@ -59,7 +59,7 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
     The top-down recurrence of the discrete B-splines (Oslo I, §4.13) over the v new knots alone.
     """
     if v == 0:
-        E[i, 0] = U[hu] - U[hu] + 1
+        E[i, 0] = U[lu - 1] - U[lu - 1] + 1
     elif v == 1:
         E[i, 0], E[i, 1] = one_new(U, lu, hu, W, lw)
     elif v == 2:
