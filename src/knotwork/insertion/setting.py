@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.insertion.matrix import apply
 from knotwork.kernel import Kernel, extent
 from knotwork.numbers import Array, empty
 
@@ -62,6 +63,11 @@ class Setting:
         return np.clip(np.searchsorted(self.U, self.T[:i], "right") - 1, *self.ends)
 
     @cached_property
+    def columns(self) -> Array:
+        """The last one of n + 1 columns of the insertion matrix that hold row i: `where`, but old vertices have their own."""
+        return np.where(self.old < 0, self.where, np.clip(self.where, self.old, self.old + self.n))
+
+    @cached_property
     def groups(self) -> tuple[Array, Array]:
         """The first vertices of groups of up to n + 1 that affect one new segment, and its old interval; -1: all are old."""
         old, n, T = self.old.tolist(), self.n, self.T.tolist()
@@ -102,6 +108,38 @@ class Setting:
         out, A, C, stack, D = self._arrays()
         K = np.empty(2 * self.n + int(self.gap.max(initial=0)), self.U.dtype)
         method(out, self.P, self.U, self.T, self.gap, self.n, A, C, stack, K, D)
+        return out
+
+    def by_intervals_with_weights(self, method: Kernel) -> Array:
+        """Run a knot-oriented method that keeps the weights of a triangle."""
+        out, A, C, stack, D = self._arrays()
+        K = self._zeros(2, self.n + 1, self.n + 1)
+        method(out, self.P, self.U, self.T, self.gap, self.n, A, C, stack, K, D)
+        return out
+
+    def _zeros(self, *shape: int) -> Array:
+        return np.full(shape, self.U[0] - self.U[0], self.U.dtype)
+
+    def by_rows(self, method: Kernel) -> Array:
+        """Return the matrix of a row-oriented method: row i has columns[i] - n … columns[i]."""
+        E = self._zeros(len(self.P) + len(self.W), self.n + 1)
+        method(E, self.U, self.T, self.old, self.columns, self.n)
+        return E
+
+    def by_columns(self, method: Kernel) -> Array:
+        """Return the matrix of a column-oriented method, as `by_rows` does."""
+        n, m = self.n, len(self.W)
+        E = self._zeros(len(self.P) + m, n + 1)
+        interval = np.repeat(np.arange(len(self.gap)), self.gap)
+        at = np.flatnonzero(self.is_old)[: len(self.P)]
+        s, c = np.empty(n + 2 + m, self.U.dtype), self._zeros(m + 3, 1)
+        method(E, self.U, self.W, interval, at, self.columns, n, s, c, extent(1))
+        return E
+
+    def applied(self, E: Array) -> Array:
+        """Return the points that a matrix gives."""
+        out, *_, D = self._arrays()
+        apply(out, E, self.P, self.old, self.columns, self.n, D)
         return out
 
     def by_vertices(self, method: Kernel) -> Array:

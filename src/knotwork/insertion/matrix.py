@@ -1,0 +1,235 @@
+"""Matrix methods (§4.11, §4.17): the knot insertion matrix by rows, by columns, and by Mørken's identity.
+
+Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q, where q is the interval that vertex i is found in.
+"""
+
+from __future__ import annotations
+
+from knotwork.insertion.forms import combine, copy
+from knotwork.insertion.steps import by_intervals
+from knotwork.kernel import kernel
+
+
+@kernel
+def row(E, a, b, x, n):  # type: ignore[no-untyped-def]
+    """E[r] = α_{q-n+r}(i): an Oslo triangle of x_1 … x_n run from a 1 at its apex down to its base (Oslo I, Eq. 4.1)."""
+    zero = E[0] - E[0]
+    E[0] = zero + 1
+    for k in range(n):
+        carried = zero
+        for r in range(k + 1):
+            c = n - 1 - k + r
+            w = (x[k] - a[c]) / (b[r] - a[c]) * E[r]
+            E[r] = carried + (E[r] - w)
+            carried = w
+        E[k + 1] = carried + (zero - zero)
+
+
+@kernel
+def rows(E, U, T, old, where, n):  # type: ignore[no-untyped-def]
+    """Find every row by itself; the row of an old vertex has a one alone."""
+    zero = U[0] - U[0]
+    for i in range(len(E)):
+        q = where[i]
+        for r in range(n + 1):
+            E[i, r] = zero
+        if old[i] >= 0:
+            E[i, old[i] - q + n] = zero + 1
+        else:
+            row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n)
+
+
+@kernel
+def columns(E, U, W, interval, at, where, n, s, c, D):  # type: ignore[no-untyped-def]
+    """Find every column by Boehm's algorithm for the control points δ_ij, without the combinations of zeros (§4.17).
+
+    New knot w lies in old interval[w]; column j begins at row at[j]. The knots in the first interval of B-spline j go in
+    in decreasing order, those in the others in increasing order: that meets the most zeros. c has one coordinate; its
+    last row is the zero beside the column.
+    """
+    zero = U[0] - U[0]
+    for i in range(len(E)):
+        for r in range(n + 1):
+            E[i, r] = zero
+    beside = len(c) - 1
+    c[beside, 0] = zero
+    lo = mid = hi = 0
+    for j in range(len(at)):
+        while lo < len(W) and interval[lo] < j:
+            lo += 1
+        while mid < len(W) and interval[mid] <= j:
+            mid += 1
+        while hi < len(W) and interval[hi] <= j + n:
+            hi += 1
+        for k in range(n + 2):
+            s[k] = U[j + k]
+        c[0, 0] = zero + 1
+        for k in range(hi - lo):
+            w = mid - 1 - k if k < mid - lo else lo + k
+            q = 0 if k < mid - lo else interval[w] - j + k
+            for i in range(k + 1, q, -1):
+                c[i, 0] = c[i - 1, 0]
+            for i in range(min(k + 1, q), max(q - n, -1), -1):
+                combine(c[i], c[i - 1 if i > 0 else beside], c[i if i <= k else beside], s[i], s[i + n], W[w], D)
+            for i in range(n + 1 + k, q, -1):
+                s[i + 1] = s[i]
+            s[q + 1] = W[w]
+        for i in range(hi - lo + 1):
+            E[at[j] + i, j - where[at[j] + i] + n] = c[i, 0]
+
+
+@kernel
+def morken(E, U, T, old, where, n):  # type: ignore[no-untyped-def]
+    """Fill the rows from the top, each from the left, by an identity of neighbouring entries (Eq. 4.8).
+
+    With a = T_{i+n}, b = T_i: (t_{j+n+1} - b) α_j(i) = (t_{j+n+1} - a) α_j(i-1)
+    + (t_{j+n+1} - t_j) / (t_{j+n} - t_{j-1}) [(a - t_{j-1}) α_{j-1}(i-1) - (b - t_{j-1}) α_{j-1}(i)].
+    Rows of old vertices are known; the first row, and one after a row that the domain does not see, is found by itself.
+    """
+    zero = U[0] - U[0]
+    known = False
+    first, last = U[n], U[len(U) - n - 1]
+    for i in range(len(E)):
+        q = where[i]
+        seen = first < T[i + n + 1] and T[i] < last
+        for r in range(n + 1):
+            E[i, r] = zero
+        if old[i] >= 0:
+            E[i, old[i] - q + n] = zero + 1
+        elif not (known and seen):
+            row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n)
+        else:
+            a, b, shift = T[i + n], T[i], q - where[i - 1]
+            for r in range(n + 1):
+                j = q - n + r
+                above = E[i - 1, r + shift] if r + shift <= n else zero
+                corner = E[i - 1, r + shift - 1] if 1 <= r + shift <= n + 1 else zero
+                beside = E[i, r - 1] if r > 0 else zero
+                t = U[j + n + 1]
+                E[i, r] = (t - a) * above
+                if j > 0:
+                    e = U[j - 1]
+                    ratio = (t - U[j]) / (U[j + n] - e)
+                    E[i, r] = E[i, r] + ratio * ((a - e) * corner - (b - e) * beside)
+                E[i, r] = E[i, r] / (t - b)
+        known = seen
+
+
+@kernel
+def product(S, X, F, lo, hi, D):  # type: ignore[no-untyped-def]
+    """S = Σ X_j F_j for lo <= j <= hi."""
+    for c in range(len(D)):
+        S[c] = X[lo] * F[lo, c]
+    for j in range(lo + 1, hi + 1):
+        for c in range(len(D)):
+            S[c] = S[c] + X[j] * F[j, c]
+
+
+@kernel
+def apply(out, E, P, old, where, n, D):  # type: ignore[no-untyped-def]
+    """out = E P, where old vertices are copied."""
+    for i in range(len(out)):
+        if old[i] >= 0:
+            copy(out[i], P[old[i]], D)
+        else:
+            product(out[i], E[i], P[where[i] - n :], 0, n, D)
+
+
+# ---- Goldman's two triangles as matrices, which make the points of a group at once (§4.17) --------------------------
+
+
+@kernel
+def weights(G, a, b, x, e, count, levels):  # type: ignore[no-untyped-def]
+    """G[r, j] = weight of the right parent of point j of level r + 1, in a triangle over count + 1 points.
+
+    The arguments go in upwards from x_1 for e > 0, downwards to x_2 for e < 0.
+    """
+    for r in range(levels):
+        u = x[r] if e > 0 else x[levels - r]
+        for j in range(count - r):
+            G[r, j] = (u - a[j + r]) / (b[j] - a[j + r])
+
+
+@kernel
+def unit(X, count):  # type: ignore[no-untyped-def]
+    """X = the unit matrix."""
+    for i in range(count):
+        for j in range(count):
+            X[i, j] = X[i, j] - X[i, j]
+        X[i, i] = X[i, i] + 1
+
+
+@kernel
+def next_columns(X, G, m, r):  # type: ignore[no-untyped-def]
+    """X[j] = coefficients of point j of level r + 1 in the points of the base, from those of level r, for j < m."""
+    for j in range(m):
+        w = G[r, j]
+        v = 1 - w
+        for k in range(j, j + r + 2):
+            X[j, k] = v * X[j, k] + w * X[j + 1, k]
+
+
+@kernel
+def from_apex(E, G, k, j):  # type: ignore[no-untyped-def]
+    """E[i] = coefficient of base point j + i in point j of level k: a triangle of k levels, top down."""
+    zero = E[0] - E[0]
+    E[0] = zero + 1
+    for i in range(k):
+        carried = zero
+        for r in range(i + 1):
+            w = G[k - 1 - i, j + r] * E[r]
+            E[r] = carried + (E[r] - w)
+            carried = w
+        E[i + 1] = carried + (zero - zero)
+
+
+@kernel
+def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+    """Both triangles for every unit vector at once; the weights are shared. K holds two square matrices."""
+    G, X, F = K[0], K[1], A[0]
+    k = 0
+    while k < m:
+        g = min(n + 1, m - k)
+        top, rest = min(g, n), n - g + 1
+        for j in range(n + 1):
+            copy(F[j], Z[k + j], D)
+        weights(G, t[k:], b, t[k + n :], 1, n, top)
+        unit(X, n + 1)
+        for r in range(top):
+            product(Z[k + r], X[0], F, 0, r, D)
+            next_columns(X, G, n - r, r)
+        for j in range(n - top + 1):
+            product(Z[k + top + j], X[j], F, j, j + top, D)
+        weights(G, t[k + rest :], b[rest:], t[k + n :], -1, g - 1, g - 1)
+        unit(X, g)
+        for r in range(g - 1):
+            next_columns(X, G, g - 1 - r, r)
+        for j in range(g):
+            product(Z[k + n + 1 + j], X[j], F[rest:], j, g - 1, D)
+        k += g
+
+
+@kernel
+def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+    """One triangle, top down, for every new vertex; those of one group are parts of two, which share the weights."""
+    G, E, F = K[0], K[1, 0], A[0]
+    k = 0
+    while k < m:
+        g = min(n + 1, m - k)
+        top, rest = min(g, n), n - g + 1
+        for j in range(n + 1):
+            copy(F[j], Z[k + j], D)
+        weights(G, t[k:], b, t[k + n :], 1, n, top)
+        for i in range(n + 1):
+            level, j = min(i, top), max(i - top, 0)
+            from_apex(E, G, level, j)
+            product(Z[k + i], E, F[j:], 0, level, D)
+        weights(G, t[k + rest :], b[rest:], t[k + n :], -1, g - 1, g - 1)
+        for j in range(g):
+            from_apex(E, G, g - 1 - j, j)
+            product(Z[k + n + 1 + j], E, F[rest + j :], 0, g - 1 - j, D)
+        k += g
+
+
+goldman_columns = by_intervals.variant(step=triangles_by_columns)
+goldman_rows = by_intervals.variant(step=triangles_by_rows)
