@@ -18,8 +18,8 @@ class Match:
     """What two curves of degree n share at a knot.
 
     `orders` are the orders of derivative that agree there without a gap: 0 … r at an affine knot, which is a joint of
-    smoothness C^r; at a vector-valued knot (n,) or (): there all derivatives are multiples of the highest, so
-    that the curves need not meet anywhere, but go to infinity alike.
+    smoothness C^r; n - r … n at a vector-valued knot, which lies at infinity: these agree everywhere, for the curves
+    differ by a polynomial of degree n - r - 1. They need not meet anywhere, but go to infinity alike.
     """
 
     knot: tuple[Any, Any]
@@ -32,7 +32,7 @@ class Match:
 
     @property
     def order(self) -> int:
-        """The highest order of derivative that agrees, with all below it if the knot is affine; -1 for none."""
+        """The highest order of derivative that agrees; -1 for none."""
         return self.orders[-1] if self.orders else -1
 
     def __str__(self) -> str:
@@ -40,7 +40,7 @@ class Match:
         if self.vector:
             if not self.orders:
                 return f"at {where} not even the highest derivatives agree"
-            return f"at {where} the derivatives of order {self.order} agree: the curves go to infinity alike"
+            return f"at {where} the derivatives of order {self.orders[0]} … {self.order} agree, and so everywhere"
         if not self.orders:
             return f"at {where} the curves do not meet"
         return f"at {where} the values and the derivatives up to order {self.order} agree"
@@ -49,8 +49,8 @@ class Match:
 def matches(p: Curve, q: Curve, knot: Any = None, tolerance: float = 0) -> Match:
     """Tell to what order two curves of one degree agree at a knot of both.
 
-    Neighbours, whose knots and control points are those of one spline shifted by m, agree to order n - m at the joint,
-    an affine knot m times between them.
+    Neighbours, whose knots and control points are those of one sequence shifted by m, share a knot m times between
+    them: n - m + 1 orders agree there, 0 … n - m if it is affine, m … n if it is vector-valued.
 
     Parameters
     ----------
@@ -86,11 +86,14 @@ def matches(p: Curve, q: Curve, knot: Any = None, tolerance: float = 0) -> Match
         if not _has(curve, at):
             raise KnotError(f"{written(at[0])} is not a knot of {curve.sequence!r}; expected one that both curves have")
     t, w = (exact(at, "knot", KnotError) if epsilon == 0 and at.dtype.kind == "f" else at)[0]
-    a = t / w if w != 0 else w  # the highest derivative is the same everywhere
+    a = t / w if w != 0 else w  # a vector-valued knot is as far from one number as from another
     apart = p.derivatives(a).reshape(n + 1, -1) - q.derivatives(a).reshape(n + 1, -1)
     near = np.abs(apart).max(axis=1) <= epsilon
-    agreeing = n + 1 if near.all() else int(np.argmin(near))
-    orders = range(agreeing) if w != 0 else range(n, n + 1) if near[n] else range(0)
+    far = np.flatnonzero(~near)
+    if w != 0:
+        orders = range(far[0] if len(far) else n + 1)
+    else:
+        orders = range(far[-1] + 1 if len(far) else 0, n + 1)
     return Match(tuple(at[0].tolist()), tuple(orders))
 
 
