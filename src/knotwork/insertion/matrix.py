@@ -11,10 +11,13 @@ from knotwork.kernel import kernel
 
 
 @kernel
-def row(E, a, b, x, n):  # type: ignore[no-untyped-def]
-    """E[r] = α_{q-n+r}(i): an Oslo triangle of x_1 … x_n run from a 1 at its apex down to its base (Oslo I, Eq. 4.1)."""
-    zero = E[0] - E[0]
-    E[0] = zero + 1
+def row(E, a, b, x, n, one):  # type: ignore[no-untyped-def]
+    """E[r] = α_{q-n+r}(i): an Oslo triangle of x_1 … x_n run from a 1 at its apex down to its base (Oslo I, Eq. 4.1).
+
+    Each value is the sum of two terms, at the ends of a level zeros, as §4.17 counts it.
+    """
+    zero, nothing = one - one, one - one
+    E[0] = one
     for k in range(n):
         carried = zero
         for r in range(k + 1):
@@ -22,37 +25,35 @@ def row(E, a, b, x, n):  # type: ignore[no-untyped-def]
             w = (x[k] - a[c]) / (b[r] - a[c]) * E[r]
             E[r] = carried + (E[r] - w)
             carried = w
-        E[k + 1] = carried + (zero - zero)
+        E[k + 1] = carried + (zero - nothing)
 
 
 @kernel
-def rows(E, U, T, old, where, n):  # type: ignore[no-untyped-def]
+def rows(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
     """Find every row by itself; the row of an old vertex has a one alone."""
-    zero = U[0] - U[0]
     for i in range(len(E)):
         q = where[i]
         for r in range(n + 1):
-            E[i, r] = zero
+            E[i, r] = one - one
         if old[i] >= 0:
-            E[i, old[i] - q + n] = zero + 1
+            E[i, old[i] - q + n] = one
         else:
-            row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n)
+            row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, one)
 
 
 @kernel
-def columns(E, U, W, interval, at, where, n, s, c, D):  # type: ignore[no-untyped-def]
+def columns(E, U, W, interval, at, where, n, s, c, one, D):  # type: ignore[no-untyped-def]
     """Find every column by Boehm's algorithm for the control points δ_ij, without the combinations of zeros (§4.17).
 
     New knot w lies in old interval[w]; column j begins at row at[j]. The knots in the first interval of B-spline j go in
     in decreasing order, those in the others in increasing order: that meets the most zeros. c has one coordinate; its
     last row is the zero beside the column.
     """
-    zero = U[0] - U[0]
     for i in range(len(E)):
         for r in range(n + 1):
-            E[i, r] = zero
+            E[i, r] = one - one
     beside = len(c) - 1
-    c[beside, 0] = zero
+    c[beside, 0] = one - one
     lo = mid = hi = 0
     for j in range(len(at)):
         while lo < len(W) and interval[lo] < j:
@@ -63,7 +64,7 @@ def columns(E, U, W, interval, at, where, n, s, c, D):  # type: ignore[no-untype
             hi += 1
         for k in range(n + 2):
             s[k] = U[j + k]
-        c[0, 0] = zero + 1
+        c[0, 0] = one
         for k in range(hi - lo):
             w = mid - 1 - k if k < mid - lo else lo + k
             q = 0 if k < mid - lo else interval[w] - j + k
@@ -79,14 +80,14 @@ def columns(E, U, W, interval, at, where, n, s, c, D):  # type: ignore[no-untype
 
 
 @kernel
-def morken(E, U, T, old, where, n):  # type: ignore[no-untyped-def]
+def morken(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
     """Fill the rows from the top, each from the left, by an identity of neighbouring entries (Eq. 4.8).
 
     With a = T_{i+n}, b = T_i: (t_{j+n+1} - b) α_j(i) = (t_{j+n+1} - a) α_j(i-1)
     + (t_{j+n+1} - t_j) / (t_{j+n} - t_{j-1}) [(a - t_{j-1}) α_{j-1}(i-1) - (b - t_{j-1}) α_{j-1}(i)].
     Rows of old vertices are known; the first row, and one after a row that the domain does not see, is found by itself.
     """
-    zero = U[0] - U[0]
+    zero = one - one
     known = False
     first, last = U[n], U[len(U) - n - 1]
     for i in range(len(E)):
@@ -95,9 +96,9 @@ def morken(E, U, T, old, where, n):  # type: ignore[no-untyped-def]
         for r in range(n + 1):
             E[i, r] = zero
         if old[i] >= 0:
-            E[i, old[i] - q + n] = zero + 1
+            E[i, old[i] - q + n] = one
         elif not (known and seen):
-            row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n)
+            row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, one)
         else:
             a, b, shift = T[i + n], T[i], q - where[i - 1]
             for r in range(n + 1):
@@ -151,12 +152,11 @@ def weights(G, a, b, x, e, count, levels):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def unit(X, count):  # type: ignore[no-untyped-def]
-    """X = the unit matrix."""
+def set_to(X, I, count):  # type: ignore[no-untyped-def]
+    """X = I, the unit matrix."""
     for i in range(count):
         for j in range(count):
-            X[i, j] = X[i, j] - X[i, j]
-        X[i, i] = X[i, i] + 1
+            X[i, j] = I[i, j]
 
 
 @kernel
@@ -170,22 +170,22 @@ def next_columns(X, G, m, r):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def from_apex(E, G, k, j):  # type: ignore[no-untyped-def]
-    """E[i] = coefficient of base point j + i in point j of level k: a triangle of k levels, top down."""
-    zero = E[0] - E[0]
-    E[0] = zero + 1
+def from_apex(E, G, k, j, one):  # type: ignore[no-untyped-def]
+    """E[i] = coefficient of base point j + i in point j of level k: a triangle of k levels, top down, as in `row`."""
+    zero, nothing = one - one, one - one
+    E[0] = one
     for i in range(k):
         carried = zero
         for r in range(i + 1):
             w = G[k - 1 - i, j + r] * E[r]
             E[r] = carried + (E[r] - w)
             carried = w
-        E[i + 1] = carried + (zero - zero)
+        E[i + 1] = carried + (zero - nothing)
 
 
 @kernel
 def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
-    """Both triangles for every unit vector at once; the weights are shared. K holds two square matrices."""
+    """Both triangles for every unit vector at once; the weights are shared. K[2] is the unit matrix."""
     G, X, F = K[0], K[1], A[0]
     k = 0
     while k < m:
@@ -194,14 +194,14 @@ def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-u
         for j in range(n + 1):
             copy(F[j], Z[k + j], D)
         weights(G, t[k:], b, t[k + n :], 1, n, top)
-        unit(X, n + 1)
+        set_to(X, K[2], n + 1)
         for r in range(top):
             product(Z[k + r], X[0], F, 0, r, D)
             next_columns(X, G, n - r, r)
         for j in range(n - top + 1):
             product(Z[k + top + j], X[j], F, j, j + top, D)
         weights(G, t[k + rest :], b[rest:], t[k + n :], -1, g - 1, g - 1)
-        unit(X, g)
+        set_to(X, K[2], g)
         for r in range(g - 1):
             next_columns(X, G, g - 1 - r, r)
         for j in range(g):
@@ -221,12 +221,12 @@ def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-unty
             copy(F[j], Z[k + j], D)
         weights(G, t[k:], b, t[k + n :], 1, n, top)
         for i in range(n + 1):
-            level, j = min(i, top), max(i - top, 0)
-            from_apex(E, G, level, j)
-            product(Z[k + i], E, F[j:], 0, level, D)
+            height, j = min(i, top), max(i - top, 0)
+            from_apex(E, G, height, j, K[2, 0, 0])
+            product(Z[k + i], E, F[j:], 0, height, D)
         weights(G, t[k + rest :], b[rest:], t[k + n :], -1, g - 1, g - 1)
         for j in range(g):
-            from_apex(E, G, g - 1 - j, j)
+            from_apex(E, G, g - 1 - j, j, K[2, 0, 0])
             product(Z[k + n + 1 + j], E, F[rest + j :], 0, g - 1 - j, D)
         k += g
 

@@ -113,27 +113,29 @@ class Setting:
     def by_intervals_with_weights(self, method: Kernel) -> Array:
         """Run a knot-oriented method that keeps the weights of a triangle."""
         out, A, C, stack, D = self._arrays()
-        K = self._zeros(2, self.n + 1, self.n + 1)
+        K = np.stack([np.eye(self.n + 1, dtype=int)] * 3) * self.one
         method(out, self.P, self.U, self.T, self.gap, self.n, A, C, stack, K, D)
         return out
 
-    def _zeros(self, *shape: int) -> Array:
-        return np.full(shape, self.U[0] - self.U[0], self.U.dtype)
+    @cached_property
+    def one(self) -> Any:
+        """1 in the arithmetic of the knots."""
+        return self.U[0] - self.U[0] + 1
 
     def by_rows(self, method: Kernel) -> Array:
         """Return the matrix of a row-oriented method: row i has columns[i] - n … columns[i]."""
-        E = self._zeros(len(self.P) + len(self.W), self.n + 1)
-        method(E, self.U, self.T, self.old, self.columns, self.n)
+        E = np.empty((len(self.P) + len(self.W), self.n + 1), self.U.dtype)
+        method(E, self.U, self.T, self.old, self.columns, self.n, self.one)
         return E
 
     def by_columns(self, method: Kernel) -> Array:
         """Return the matrix of a column-oriented method, as `by_rows` does."""
         n, m = self.n, len(self.W)
-        E = self._zeros(len(self.P) + m, n + 1)
+        E = np.empty((len(self.P) + m, n + 1), self.U.dtype)
         interval = np.repeat(np.arange(len(self.gap)), self.gap)
         at = np.flatnonzero(self.is_old)[: len(self.P)]
-        s, c = np.empty(n + 2 + m, self.U.dtype), self._zeros(m + 3, 1)
-        method(E, self.U, self.W, interval, at, self.columns, n, s, c, extent(1))
+        s, c = np.empty(n + 2 + m, self.U.dtype), np.empty((m + 3, 1), self.U.dtype)
+        method(E, self.U, self.W, interval, at, self.columns, n, s, c, self.one, extent(1))
         return E
 
     def applied(self, E: Array) -> Array:
