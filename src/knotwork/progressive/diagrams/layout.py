@@ -26,16 +26,19 @@ class Spot:
         return Spot(self.panel, self.x + 1, self.y + 1)
 
 
-def rows(values: Iterable[Value]) -> list[list[Value]]:
-    """Return combinations made one after another in rows, left to right: neighbours share the parent between them."""
+def rows(values: Iterable[Value], descending: bool = False) -> list[list[Value]]:
+    """Return combinations in rows, left to right: neighbours made one after another share the parent between them.
+
+    `descending` if a procedure makes them from right to left.
+    """
     found: list[list[Value]] = []
     for value in values:
-        P, Q = found[-1][-1].parents if found else (None, None)
-        if value.parents[0] is Q or value.parents[1] is P:
+        first, last = (1, 0) if descending else (0, 1)
+        if found and value.parents[first] is found[-1][-1].parents[last]:
             found[-1].append(value)
         else:
             found.append([value])
-    return [row[::-1] if row[-1].parents[1] is row[0].parents[0] else row for row in found]
+    return [row[::-1] for row in found] if descending else found
 
 
 class Layout:
@@ -51,9 +54,11 @@ class Layout:
         The control points.
     values : iterable of Value
         The combinations, as recorded.
+    descending : bool
+        Whether the procedure makes a row from right to left.
     """
 
-    def __init__(self, given: Sequence[Value], values: Iterable[Value]) -> None:
+    def __init__(self, given: Sequence[Value], values: Iterable[Value], descending: bool = False) -> None:
         #: what stands where
         self.values: dict[Spot, Value] = {}
         #: which spots are joined and with what factor, two edges for each combination
@@ -61,7 +66,7 @@ class Layout:
         self._latest: dict[Value, Spot] = {}
         self.panels = 0
         self._begin(given)
-        for row in rows(values):
+        for row in rows(values, descending):
             parents = [row[0].parents[0], *(value.parents[1] for value in row)]
             first = self._line(parents) or self._begin(parents)
             for k, value in enumerate(row):

@@ -21,8 +21,14 @@ _PARTS = re.compile(
 )
 
 # widths in ems of a wide serif face, so that what fits here fits in any
-_WIDE = {**dict.fromkeys("mwMW", 0.95), **dict.fromkeys("ijlrtf()[],.1", 0.48), **dict.fromkeys("+−=", 0.84)}
-_LETTER, _SPACE = 0.66, 0.32
+_WIDE = {**dict.fromkeys("mwMW", 0.95), **dict.fromkeys("ijlrtf()[],.", 0.48), **dict.fromkeys("+−=", 0.84)}
+_LETTER, _CAPITAL, _SPACE = 0.66, 0.9, 0.32
+
+
+def _width(letter: str) -> float:
+    if letter.isspace() or unicodedata.combining(letter):
+        return _SPACE if letter.isspace() else 0
+    return _WIDE.get(letter, _CAPITAL if letter.isupper() else _LETTER)
 
 
 @dataclass(frozen=True)
@@ -36,10 +42,7 @@ class Part:
     @property
     def width(self) -> float:
         """About how wide, in ems; never wider."""
-        ems = sum(
-            _SPACE if c.isspace() else 0 if unicodedata.combining(c) else _WIDE.get(c, _LETTER) for c in self.text
-        )
-        return ems * (SMALL if self.lowered else 1)
+        return sum(map(_width, self.text)) * (SMALL if self.lowered else 1)
 
 
 def parts(text: str) -> list[Part]:
