@@ -145,7 +145,7 @@ def evenly_spaced(curve: Curve, start: Any, step: Any, count: int) -> Array:
     if ends.ndim != 1:
         raise ParameterError(f"start and step of shape {ends.shape[1:]} given; expected numbers")
     require_finite(ends, "start and step", ParameterError)
-    first = curve(ends[0] + ends[1] * np.arange(n + 1).astype(ends.dtype)).reshape(n + 1, -1)
+    first = curve(np.arange(n + 1).astype(ends.dtype) * ends[1] + ends[0]).reshape(n + 1, -1)
     for k in range(1, n + 1):
         first[k:] = first[k:] - first[k - 1 : -1]
     out = empty((m, first.shape[1]), first.dtype)

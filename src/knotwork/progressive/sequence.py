@@ -178,7 +178,7 @@ class Sequence(Frozen):
         sign = -1 if n % 2 else 1
         total = p[0] - p[0]
         for r in range(n + 1):
-            total = total + sign * factorial_ratio(n, r, weight) * e[n - r] * p[r]
+            total = total + p[r] * (sign * factorial_ratio(n, r, weight) * e[n - r])
             sign = -sign
         return total
 
