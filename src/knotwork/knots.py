@@ -91,11 +91,11 @@ def old_is_next(U, j, W, k, stop):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def advance(U, j, W, k, stop):  # type: ignore[no-untyped-def]
-    """Return how many of U and of W are merged when one more knot is."""
+def next_knot(U, j, W, k, stop):  # type: ignore[no-untyped-def]
+    """Return the knot that follows j of U and k of W in their merge, and how many of each are then merged."""
     if old_is_next(U, j, W, k, stop):
-        return j + 1, k
-    return j, k + 1
+        return U[j], j + 1, k
+    return W[k], j, k + 1
 
 
 @kernel
@@ -117,12 +117,7 @@ def merge(U, W, T, lo):  # type: ignore[no-untyped-def]
     j = old_among(U, W, len(U), lo)
     k = lo - j
     for i in range(len(T)):
-        if old_is_next(U, j, W, k, len(U)):
-            T[i] = U[j]
-            j += 1
-        else:
-            T[i] = W[k]
-            k += 1
+        T[i], j, k = next_knot(U, j, W, k, len(U))
 
 
 def merged(a: Array, b: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from knotwork.banded import combination, weighted_sum
 from knotwork.kernel import extent, kernel
-from knotwork.knots import advance, merge, merged, old_among, old_is_next, require_multiplicity
+from knotwork.knots import merge, merged, next_knot, old_among, require_multiplicity
 from knotwork.numbers import Array, empty
 from knotwork.parallel import in_parts
 
@@ -105,18 +105,15 @@ def refine_curve(U, W, stop, n, lo, T, P, out, E, D):  # type: ignore[no-untyped
     """
     lu = hu = old_among(U, W, stop, lo)
     lw = hw = lo - lu
-    for i in range(-n, out.shape[1] + 1):
-        if old_is_next(U, hu, W, hw, stop):
-            T[i + n] = U[hu]
-            hu += 1
-        else:
-            T[i + n] = W[hw]
-            hw += 1
-        if i > 0 and T[i + n] == T[i - 1]:
+    for i in range(n + 1):
+        T[i], hu, hw = next_knot(U, hu, W, hw, stop)
+    for i in range(out.shape[1]):
+        _, lu, lw = next_knot(U, lu, W, lw, stop)
+        control_point(U, lu, hu, W, lw, hw - lw, P, out, i, E, D)
+        x, hu, hw = next_knot(U, hu, W, hw, stop)
+        if x == T[i]:
             return False
-        if 0 <= i < out.shape[1]:
-            lu, lw = advance(U, lu, W, lw, stop)
-            control_point(U, lu, hu, W, lw, hw - lw, P, out, i, E, D)
+        T[i + n + 1] = x
     return True
 
 
@@ -126,8 +123,8 @@ def matrix_rows(U, W, stop, n, lo, count, start, new, E):  # type: ignore[no-unt
     lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
     lw, hw = lo - lu, lo + n - hu
     for i in range(count):
-        lu, lw = advance(U, lu, W, lw, stop)
-        hu, hw = advance(U, hu, W, hw, stop)
+        _, lu, lw = next_knot(U, lu, W, lw, stop)
+        _, hu, hw = next_knot(U, hu, W, hw, stop)
         start[i], new[i] = lu - 1 - (hw - lw), hw - lw
         discrete_bsplines(U, lu, hu, W, lw, hw - lw, E, i)
 
