@@ -55,10 +55,9 @@ def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None) 
     Examples
     --------
     >>> import knotwork as kw
-    >>> cubic = kw.curve([0, 0, 0, 8.0])
-    >>> found = kw.lower(cubic)
-    >>> round(found.bound, 9), kw.lower(kw.elevate(cubic)).spline.points.tolist()
-    (1.0, [0.0, 0.0, 0.0, 8.0])
+    >>> cubic = kw.curve([1, 1, 1, 9])
+    >>> round(kw.lower(cubic).bound, 9), kw.lower(kw.elevate(cubic)).spline.points.round(9).tolist()
+    (1.0, [1.0, 1.0, 1.0, 9.0])
     """
     axis = spline.axis(axis)
     times = whole(times, "times", 0, ParameterError)
