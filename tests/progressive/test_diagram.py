@@ -455,6 +455,8 @@ def test_expressions():
         (lambda: diagram("de boor", 1, knots=[0, (0, 0)]), KnotError, "neither a number nor a vector"),
         (lambda: diagram("de boor", 1, knots=[0, 1j]), KnotError, "expected a name, a real number"),
         (lambda: diagram("de boor", 1, knots=[0, np.nan]), KnotError, "expected a name, a real number"),
+        (lambda: diagram("de boor", 1, knots=["t + u", 0]), KnotError, "'t + u' given; expected a letter"),
+        (lambda: diagram("de boor", 1, knots=["", 0]), KnotError, "'' given; expected a letter"),
         (lambda: diagram("oslo", 1, knots=[0, 1], arguments=[2, 0]), KnotError, "method 'oslo'"),
         (lambda: figure("3.1"), ParameterError, "'3.1' given; expected one of 1.1"),
     ],

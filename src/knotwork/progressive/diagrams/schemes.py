@@ -81,6 +81,8 @@ class Scheme:
         The usual ones for degree n.
     partial : bool
         Whether fewer arguments than n will do.
+    raised : int
+        How much higher the degree n of the triangles is than that of what they are drawn for.
     shared : bool
         Whether what is computed twice is drawn once.
     downward : bool
@@ -92,6 +94,7 @@ class Scheme:
     knots: Callable[[int], Written]
     arguments: Callable[[int], Written]
     partial: bool = False
+    raised: int = 0
     shared: bool = False
     downward: bool = False
 
@@ -131,13 +134,7 @@ SCHEMES = {
     "derivative": Scheme("The first derivative", apex, _T, lambda n: ["δ", *["t"] * (n - 1)]),
     "boehm-derivative": Scheme("All derivatives at a: Boehm's algorithm", boehm_derivative, _T, _each("a")),
     "matching": Scheme("Two neighbours", neighbours, lambda n: names("t", 1, 2 * n + 1), _AT_T, shared=True),
-    "integration": Scheme(
-        "Two integrals of a basis function",
-        integral,
-        lambda n: names("t", 1, 2 * n + 2),
-        lambda n: ["t"] * (n + 1),
-        downward=True,
-    ),
+    "integration": Scheme("Two integrals of a basis function", integral, _T, _AT_T, raised=1, downward=True),
     "monomial": Scheme("The de Boor algorithm in monomial form", edges, _each(0, "δ"), _AT_T),
     "power": Scheme("The de Boor algorithm in power basis form", apex, _nodes, _AT_T),
     "newton-dual": Scheme("The de Boor algorithm in Newton dual form", edges, _newton, _AT_T),
@@ -169,7 +166,8 @@ def diagram(
         At least 1.
     knots, arguments : iterable of names, numbers, "δ" and pairs of these, optional
         Other knots and blossom arguments than those usual for the procedure: 2n knots, and 2n + 1 for "matching";
-        n arguments; for "boehm" up to n, and for a change of basis 2n, which are the new knots.
+        n arguments; for "boehm" up to n, and for a change of basis 2n, which are the new knots. For "integration" n is
+        the degree of the integral.
     homogeneous : bool
         Whether the usual knots are homogeneous: t₁ is (t₁, w₁), written t̂₁, and u₁ is (u₁, v₁).
 
@@ -194,10 +192,10 @@ def diagram(
     """
     if procedure not in SCHEMES:
         raise ParameterError(f"procedure {procedure!r} given; expected one of {', '.join(SCHEMES)}")
-    scheme, n = SCHEMES[procedure], whole(degree, "degree", 1, ParameterError)
+    scheme = SCHEMES[procedure]
+    n = whole(degree, "degree", 1, ParameterError) + scheme.raised
     t = _taken(knots, scheme.knots(n), "knots", procedure, homogeneous)
     u = _taken(arguments, scheme.arguments(n), "arguments", procedure, homogeneous, n if scheme.partial else 0)
-    n = n + 1 if procedure == "integration" else n
     P = given(t, n)
     with recording([*t[:n], *u, DELTA, *t[n:]], scheme.shared) as values:
         results = {*scheme.run(P, t, u)[:, 0].tolist()}

@@ -17,6 +17,8 @@ from knotwork.progressive.homogeneous import DELTA, written
 #: a homogeneous knot (t, w) of expressions
 Knot: TypeAlias = "tuple[Expression, Expression]"
 
+#: a letter, then subscripts: t, t₁, t_{q−2}
+_NAME = r"[^\W\d_₀-₉](?:[₀-₉]+|_\{[^{}\s]+\})?"
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -107,6 +109,8 @@ def _is_number(value: Any, number: int) -> bool:
 
 
 def _expression(value: Any) -> Expression:
+    if isinstance(value, str) and not re.fullmatch(_NAME, value):
+        raise KnotError(f"knot {value!r} given; expected a letter, which may have a subscript: t₁, t_{{q−2}}")
     try:
         return Expression(value)
     except (TypeError, ValueError, OverflowError):
@@ -122,7 +126,7 @@ def knots(values: Iterable[Any]) -> Array:
 def label(knot: Knot) -> str:
     """Return a knot as the field writes it: t₁, δ, 2; t̂₁ where both of (t₁, w₁) are names."""
     t, w = (str(x) for x in knot)
-    named = all(re.fullmatch(r"[^\W\d]\S*", x) for x in (t, w))
+    named = all(re.fullmatch(_NAME, x) for x in (t, w))
     return f"{t[0]}\N{COMBINING CIRCUMFLEX ACCENT}{t[1:]}" if named else written((knot[0], knot[1]))
 
 
