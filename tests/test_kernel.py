@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import importlib
 import os
 import pkgutil
@@ -17,6 +18,7 @@ import pytest
 
 import knotwork as kw
 from knotwork import kernel as kernels
+from knotwork import progressive
 from knotwork.conversion.oslo import conversion_matrix, converted
 from knotwork.kernel import Kernel
 
@@ -158,6 +160,37 @@ def test_plain_and_compiled_agree_on_elimination(both):
     kw.stability.condition(space, space.with_knots([0.1, 0.5, 0.7]))
 
 
+@pytest.mark.parametrize(
+    ("knots", "dtype"),
+    [(np.float64, np.float64), (np.float64, np.float32), (np.float64, np.complex128), (np.complex128, np.complex128)],
+)
+def test_plain_and_compiled_agree_on_progressive_curves(both, knots, dtype):
+    """Complex knots have variants of their own: complex quotients."""
+    rng = np.random.default_rng(5)
+    for degree in (3, 0, 22):  # always four numbers to loop over, so that all is compiled once
+        t, u = (points(rng, knots, 2 * degree) for _ in range(2))
+        t[degree // 2 : degree] = t[degree // 2 : degree][:1]  # knots repeated
+        c = progressive.Curve(t, points(rng, dtype, degree + 1, 4))
+        x = points(rng, knots, 4)
+        for work in (c, c.derivatives, c.basis, c.dual):
+            work(x)
+        c.blossom(*[progressive.DELTA, *x, *x, *u][:degree])
+        c.derivative()
+        c.integrate(x[0], x[1])
+        c.dual_functional(degree // 2, points(rng, dtype, degree + 1, 4), x[2])
+        for method in progressive.METHODS:
+            progressive.change_basis(c, u, method)
+        for times in range(1, min(degree, 3) + 1):
+            progressive.insert(c, u[0], times)
+        progressive.evenly_spaced(c, x[0], x[1], 5)
+    mixed = [progressive.DELTA, (x[0], x[1]), x[2], x[3], (x[1], x[0]), (x[3], 2)]
+    c = progressive.Curve(mixed, points(rng, dtype, 4, 4))
+    for work in (c, c.derivatives, c.basis, functools.partial(c.basis, way="up"), c.dual):
+        work(x)
+    progressive.divided_differences(np.repeat(x, 2), points(rng, dtype, 8, 4))
+    progressive.newton_dual_by_differences(np.repeat(x, 2), x)
+
+
 def test_every_kernel_is_tried(both):
     """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
     for module in pkgutil.walk_packages(kw.__path__, "knotwork."):
@@ -166,6 +199,8 @@ def test_every_kernel_is_tried(both):
     test_plain_and_compiled_agree_on_curves(both, np.float64)
     test_plain_and_compiled_agree_on_surfaces(both)
     test_plain_and_compiled_agree_on_removal(both, np.float64)
+    test_plain_and_compiled_agree_on_progressive_curves(both, np.float64, np.float64)
+    test_plain_and_compiled_agree_on_progressive_curves(both, np.complex128, np.complex128)
     test_plain_and_compiled_agree_on_elimination(both)
     reached = set(both)
     while below := {callee for caller in reached for _, callee in caller._callees()} - reached:

@@ -46,8 +46,12 @@ def differences(c, x, f, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def march(out, difference, D):  # type: ignore[no-untyped-def]
-    """out[i] = p(a + i h) from the differences Δ^k p(a), by n additions a point (forward differencing)."""
+    """out[i] = p(a + i h) from p(a), …, p(a + n h): differences Δ^k p(a), then n additions a point (§2.4.5)."""
     n = len(difference) - 1
+    for k in range(1, n + 1):
+        for q in range(n, k - 1, -1):
+            for c in range(len(D)):
+                difference[q, c] = difference[q, c] - difference[q - 1, c]
     for i in range(len(out)):
         for c in range(len(D)):
             out[i, c] = difference[0, c]
@@ -146,8 +150,6 @@ def evenly_spaced(curve: Curve, start: Any, step: Any, count: int) -> Array:
         raise ParameterError(f"start and step of shape {ends.shape[1:]} given; expected numbers")
     require_finite(ends, "start and step", ParameterError)
     first = curve(np.arange(n + 1).astype(ends.dtype) * ends[1] + ends[0]).reshape(n + 1, -1)
-    for k in range(1, n + 1):
-        first[k:] = first[k:] - first[k - 1 : -1]
     out = empty((m, first.shape[1]), first.dtype)
     march(out, first, extent(first.shape[1]))
     return out.reshape((m, *curve.control.shape[1:]))
