@@ -310,3 +310,24 @@ def test_weights_stay_positive():
 def test_a_difference_is_measured_in_both_directions():
     for f, g in itertools.permutations([kw.curve([0, 0, 1, 0]), kw.curve([0, 2], degree=1)]):
         assert difference(f, g) == pytest.approx(2)
+
+
+@pytest.mark.parametrize("scale", [1e308, 1e-300, 5e-324])
+@pytest.mark.parametrize("length", [1.0, 1e-300, 1e300])
+def test_huge_and_tiny_numbers(scale, length):
+    """A finite result with a finite bound, or an error that says what is not finite."""
+    P = np.random.default_rng(0).uniform(-1, 1, 12) * scale
+    f = kw.Spline(kw.SplineSpace(3, kw.SplineSpace.clamped(3, 12).knots * length), P)
+    target = kw.SplineSpace(3, kw.SplineSpace.clamped(3, 9).knots * length)
+    conversions = [lambda how=how: kw.convert(f, target, how=how) for how in ("oslo", "interpolation", "least-squares")]
+    conversions += [lambda: kw.lower(f), lambda: kw.from_pieces(kw.convert(f, "monomial").spline)]
+    results = []
+    for convert in conversions:
+        try:
+            results.append(convert())
+        except PointError as error:
+            assert "expected finite numbers" in str(error)  # noqa: PT017
+    for found in results:
+        assert np.isfinite(found.spline.coefficients).all()
+        assert np.isfinite(found.bound)
+    assert results

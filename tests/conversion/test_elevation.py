@@ -85,6 +85,16 @@ def test_floats_are_near_the_exact_points(curve):
     assert abs(higher.coefficients - exact.coefficients.astype(float)).max() <= 1e-13
 
 
+def test_rounding_is_that_of_a_few_operations():
+    rng = np.random.default_rng(0)
+    inner = np.sort(rng.random(996))
+    inner[300:304] = inner[300]
+    curve = kw.curve(rng.standard_normal((1000, 3)), 3, np.concatenate([[0.0] * 4, inner, [1.0] * 4]))
+    for times, most in ((1, 2e-16), (3, 1e-15)):
+        exact = kw.elevate(curve.in_exact_arithmetic(), times).coefficients.astype(float)
+        assert abs(kw.elevate(curve, times).coefficients - exact).max() <= most * abs(exact).max()
+
+
 def test_bernstein_by_the_book():
     """A Bézier net of degree n becomes ((n + 1 - i) P_i + i P_{i-1}) / (n + 1)."""
     for n in range(8):

@@ -110,13 +110,14 @@ def difference(f: Spline, g: Spline) -> Any:
     for axis, (space, other) in enumerate(zip(f.spaces, g.spaces, strict=True)):
         finer = common_refinement(space, other)
         F, G = embedding(space, finer).apply(F, axis), embedding(other, finer).apply(G, axis)
+    with np.errstate(over="ignore"):
+        change = G - F
     if not f.rational:
-        return np.abs(G - F).max(keepdims=True).item()
+        return np.abs(change).max(keepdims=True).item()
     v, points = G[..., -1], f.points.reshape(-1, f.dim)
     if v.min() <= 0:
         return float("inf")
     low, high = points.min(axis=0), points.max(axis=0)
     centre, reach = low + (high - low) / 2, (high - low) / 2
-    change = G - F
     dw = change[..., -1:]
     return ((np.abs(change[..., :-1] - centre * dw) + reach * np.abs(dw)).max(keepdims=True) / v.min()).item()

@@ -17,7 +17,7 @@ from knotwork.elimination import solve
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import Basis
 from knotwork.least_squares import least_squares
-from knotwork.numbers import Array, exact, in_arithmetic_of, real_numbers
+from knotwork.numbers import Array, exact, in_arithmetic_of, real_numbers, require_finite
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -109,7 +109,8 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
 
 
 def concluded(spline: Spline, result: Spline, how: Any) -> Conversion:
-    """Return the result of a conversion with what it lost, or raise if it has weights that are not positive."""
+    """Return the result of a conversion with what it lost, or raise if a float or a weight is not what it must be."""
+    require_finite(result.coefficients, "converted coefficients", PointError)
     if result.rational and result.coefficients[..., -1].min() <= 0:
         raise PointError(
             f"a weight of the result would be {result.coefficients[..., -1].min()}; expected positive ones"
@@ -196,6 +197,8 @@ def by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
     t, zero = finer.unrolled
     k, rows = finer.order, finer.dimension
     weight = t[zero + k : zero + k + rows] - t[zero : zero + rows]
+    if not target.exact:
+        weight = weight / weight.max()
 
     def solution(y: Array) -> Array:
         b = least_squares(A, weight, y)

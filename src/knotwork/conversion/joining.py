@@ -179,10 +179,11 @@ def _found(spline: Spline, axis: int, allowed: Any) -> Array:
     rounded = 0 if P.dtype == object else 8 * (n + 1) * np.finfo(P.dtype).eps * size
     for j in range(n + 1):
         scale = [((short / length[side]) ** j)[None, :, None] for side in (left, right)]
-        jump = np.abs(nets[:, left, -1] * scale[0] - nets[:, right, 0] * scale[1]).max(axis=(0, 2), initial=0)
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is a jump
+            jump = np.abs(nets[:, left, -1] * scale[0] - nets[:, right, 0] * scale[1]).max(axis=(0, 2), initial=0)
+            nets = nets[:, :, 1:] - nets[:, :, :-1]
         smooth &= jump <= max(allowed, 2**j * rounded)
         order[smooth] = j
-        nets = nets[:, :, 1:] - nets[:, :, :-1]
     return order
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import to_bezier
-from knotwork.numbers import Array, exact
+from knotwork.numbers import Array, exact, require_finite
 from knotwork.progressive import Curve, bernstein, change_basis, monomial
 from knotwork.spline import Spline
 
@@ -65,16 +65,15 @@ def _along_degrees(P: Array, vectors: tuple[Array, ...], backwards: bool) -> Arr
     k, dtype = len(vectors), P.dtype
     for axis, x in enumerate(vectors):
         n = P.shape[k + axis] - 1
-        powers = (x[1:] - x[:-1])[:, None] ** np.arange(n + 1)
-        if not backwards:
-            powers = 1 / powers
-        shape = [1] * P.ndim
-        shape[axis], shape[k + axis] = powers.shape
-        scale = powers.reshape(shape)
         M = _matrix(n, backwards, P.dtype == object)
-        P = P * scale if backwards else P
-        P = np.moveaxis(np.tensordot(M, P, axes=(1, k + axis)), 0, k + axis)
-        P = P if backwards else P * scale
+        shape = [1] * P.ndim
+        shape[axis], shape[k + axis] = len(x) - 1, n + 1
+        with np.errstate(all="ignore"):  # said better below
+            powers = (x[1:] - x[:-1])[:, None] ** np.arange(n + 1)
+            P = P * powers.reshape(shape) if backwards else P
+            P = np.moveaxis(np.tensordot(M, P, axes=(1, k + axis)), 0, k + axis)
+            P = P if backwards else P / powers.reshape(shape)
+    require_finite(P, "coefficients in the other basis", PointError)
     return np.ascontiguousarray(P, dtype)
 
 
