@@ -103,10 +103,7 @@ def _counted(kind: str, value: Fraction) -> Counting:
 
 @functools.total_ordering
 class Counting:
-    """An exact number that counts the additions, multiplications and divisions done with it, while `counting`.
-
-    ``x - x`` of one and the same number is how a kernel makes a zero; it is not counted.
-    """
+    """An exact number that counts the additions, multiplications and divisions done with it, while `counting`."""
 
     __slots__ = ("value",)
 
@@ -132,12 +129,9 @@ class Counting:
         return result
 
     __add__, __radd__ = _operation("additions", "add")
-    _sub, __rsub__ = _operation("additions", "sub")
+    __sub__, __rsub__ = _operation("additions", "sub")
     __mul__, __rmul__ = _operation("multiplications", "mul")
     __truediv__, __rtruediv__ = _operation("divisions", "truediv")
-
-    def __sub__(self, other: Any) -> Any:
-        return Counting(0) if other is self else self._sub(other)
 
     def __neg__(self) -> Counting:
         return Counting(-self.value)

@@ -13,7 +13,7 @@ import numpy as np
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.forms import copy, divide, division_triangle, factored
 from knotwork.insertion.oslo import triangle
-from knotwork.insertion.steps import by_intervals, by_vertices, vertex
+from knotwork.insertion.steps import by_intervals, vertex
 from knotwork.kernel import extent, kernel
 from knotwork.numbers import Array, real_numbers
 from knotwork.spline import Spline
@@ -36,7 +36,7 @@ def skip_equal(S, P, Q, a, b, u, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
-    """Step 4: in round i P_j becomes P_j + (s_{i+n} - s_{i+j}) P_{j+1}, and P_0 is the vertex Z[first + e i] (Fig. 3.5).
+    """Step 4: in round i P_j becomes P_j + (s_{i+n} - s_{i+j}) P_{j+1}; P_0 is the vertex Z[first + e i] (Fig. 3.5).
 
     A point that no longer reaches a vertex of the last rounds is not computed.
     """
@@ -48,7 +48,7 @@ def rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def nested_rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
-    """Step 4': Q_j becomes Q_j + (s_{i+n-j} - s_i) Q_{j+1} for j = min(i, n) - 1, …, 0: nested multiplication (Fig. 3.3)."""
+    """Step 4': P_j becomes P_j + (s_{i+n-j} - s_i) P_{j+1}, j = min(i, n) - 1 … 0: nested multiplication (Fig. 3.3)."""
     for i in range(1, count + 1):
         for j in range(min(i, n) - 1, -1, -1):
             u = s[i + n - j - 1]
@@ -120,7 +120,7 @@ def backward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def both_ways(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
-    """Part forward, part backward from the two edges of one division triangle: m n combinations if m >= n - 1 (§3.6.1)."""
+    """Part forward, part backward, from the two edges of one division triangle (§3.6.1)."""
     for j in range(n + 1):
         copy(A[0, j], Z[j], D)
     copy(A[1, 0], A[0, n], D)
@@ -145,7 +145,7 @@ def both_ways(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def by_vertices_reduced(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untyped-def]
-    """The Oslo variant (Fig. 3.8) with a reduced start-up: the division triangle of the next interval adds one side (Fig. 3.9).
+    """The Oslo variant (Fig. 3.8); the division triangle of the next interval has one new side (Fig. 3.9).
 
     D_i^j = (D_i^{j-1} - D_{i-1}^{j-1}) / (t_{i+n-j+1} - t_i) does not depend on the interval: F[i - q + n, j] holds it.
     """
@@ -181,7 +181,7 @@ reduced = by_vertices_reduced.variant(vertex=triangle.variant(combine=factored))
 
 
 class Startup:
-    """Steps 1 to 3 for one interval of a curve, kept: knots can be put in again and again without redoing them (§3.6.4).
+    """Steps 1 to 3 for one interval of a curve, kept: knots can be put in again without redoing them (§3.6.4).
 
     Parameters
     ----------

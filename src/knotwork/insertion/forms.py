@@ -1,6 +1,6 @@
 """The forms of every point method: how two points are combined, and over which knots (§4.10).
 
-A method is written once, over the kernels `combine`, `frame` and `finish` of its standard form. The others bind them anew:
+A method is written once, over the kernels `combine`, `frame` and `finish`. Its forms bind them anew:
 
 - *rewritten*: the same combination with one multiplication a coordinate;
 - *factored*: the points of an interval are first taken to the knots t_{q-n+1} … t_q, δⁿ (the division triangle); over
@@ -78,7 +78,7 @@ def divide(S, P, Q, a, b, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def division_triangle(F, a, b, n, D):  # type: ignore[no-untyped-def]
-    """F[j] = B(a_{j+1} … a_n, δ^j) from F[j] = B(a_{j+1} … a_n, b_1 … b_j): the start-up of §3.2 (Fig. 3.4, Fig. 4.9)."""
+    """F[j] = B(a_{j+1} … a_n, δ^j) from B(a_{j+1} … a_n, b_1 … b_j): the start-up of §3.2 (Fig. 3.4, 4.9)."""
     for j in range(1, n + 1):
         for i in range(n, j - 1, -1):
             divide(F[i], F[i - 1], F[i], a[i - 1], b[i - j], D)

@@ -26,7 +26,7 @@ def descending(C, t, b, n, x, g, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def in_groups(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
-    """Insert up to n + 1 knots at once: two triangles over the same points, smaller ones for a last group (Fig. 4.5, 4.6)."""
+    """Insert up to n + 1 knots at once: two triangles over the same points, smaller ones at the end (Fig. 4.5, 4.6)."""
     k = 0
     while k < m:
         g = min(n + 1, m - k)
@@ -78,4 +78,3 @@ def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore
 goldman = by_intervals.variant(step=in_groups)
 modified = by_segments.variant(segment=two_triangles)
 modified_improved = by_segments.variant(segment=two_triangles_improved)
-

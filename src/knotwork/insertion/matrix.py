@@ -1,6 +1,6 @@
 """Matrix methods (§4.11, §4.17): the knot insertion matrix by rows, by columns, and by Mørken's identity.
 
-Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q, where q is the interval that vertex i is found in.
+Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q; q is the interval that vertex i is found in.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ def row(E, a, b, x, n, one):  # type: ignore[no-untyped-def]
 
     Each value is the sum of two terms, at the ends of a level zeros, as §4.17 counts it.
     """
-    zero, nothing = one - one, one - one
+    zero = one - one
     E[0] = one
     for k in range(n):
         carried = zero
@@ -25,7 +25,7 @@ def row(E, a, b, x, n, one):  # type: ignore[no-untyped-def]
             w = (x[k] - a[c]) / (b[r] - a[c]) * E[r]
             E[r] = carried + (E[r] - w)
             carried = w
-        E[k + 1] = carried + (zero - nothing)
+        E[k + 1] = carried + zero - zero
 
 
 @kernel
@@ -45,9 +45,9 @@ def rows(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
 def columns(E, U, W, interval, at, where, n, s, c, one, D):  # type: ignore[no-untyped-def]
     """Find every column by Boehm's algorithm for the control points δ_ij, without the combinations of zeros (§4.17).
 
-    New knot w lies in old interval[w]; column j begins at row at[j]. The knots in the first interval of B-spline j go in
-    in decreasing order, those in the others in increasing order: that meets the most zeros. c has one coordinate; its
-    last row is the zero beside the column.
+    New knot w lies in old interval[w]; column j begins at row at[j]. Knots in the first interval of B-spline j go in in
+    decreasing order, those in the others in increasing order: that meets the most zeros. c has one coordinate; its last
+    row is the zero beside the column.
     """
     for i in range(len(E)):
         for r in range(n + 1):
@@ -172,7 +172,7 @@ def next_columns(X, G, m, r):  # type: ignore[no-untyped-def]
 @kernel
 def from_apex(E, G, k, j, one):  # type: ignore[no-untyped-def]
     """E[i] = coefficient of base point j + i in point j of level k: a triangle of k levels, top down, as in `row`."""
-    zero, nothing = one - one, one - one
+    zero = one - one
     E[0] = one
     for i in range(k):
         carried = zero
@@ -180,7 +180,7 @@ def from_apex(E, G, k, j, one):  # type: ignore[no-untyped-def]
             w = G[k - 1 - i, j + r] * E[r]
             E[r] = carried + (E[r] - w)
             carried = w
-        E[i + 1] = carried + (zero - nothing)
+        E[i + 1] = carried + zero - zero
 
 
 @kernel

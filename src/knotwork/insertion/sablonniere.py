@@ -10,7 +10,7 @@ from knotwork.kernel import kernel
 
 @kernel
 def tetrahedron(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
-    """Vertices 0 … k - 1: up the veer face with x_{n+1}, x_{n+2}, …, then parallel to the base with x_n, x_{n-1}, … (Fig. 4.3).
+    """Vertices 0 … k - 1: up the veer face with x_{n+1}, …, then parallel to the base with x_n, x_{n-1}, … (Fig. 4.3).
 
     Fewer than n + 1 vertices take the lower part of the tetrahedron.
     """
@@ -54,8 +54,8 @@ def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[n
 def halves(S, R, a, b, x, i, j, n, stack, D):  # type: ignore[no-untyped-def]
     """S[s] = B(x_{s+1} … x_{s+n}) for i <= s <= j from the row R[0] of n + 1 points over a, b (Fig. 4.8).
 
-    The arguments x_{j+1} … x_{n+i} of all of them go in first. Then the row serves both halves of i … j: to the first go
-    x_j, x_{j-1}, …, to the second x_{n+i+1}, … in addition.
+    The arguments x_{j+1} … x_{n+i} of all of them go in first. Then the row serves both halves of i … j: in addition,
+    the first gets x_j, x_{j-1}, …, the second x_{n+i+1}, ….
     """
     for r in range(n - j + i):
         level(R[0], R[0], a[r:], b, n - r, x[j + r], D)
@@ -89,7 +89,7 @@ def recursive(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-d
 
 @kernel
 def inner(Z, A, t, b, x, lo, hi, e, n, C, stack, D):  # type: ignore[no-untyped-def]
-    """Z[s] = B(x_{s+1} … x_{s+n}) for lo <= s <= hi, from the points A[0] over t, b: a tetrahedron without its lone face.
+    """Z[s] = B(x_{s+1} … x_{s+n}) for lo <= s <= hi, from A[0] over t, b: a tetrahedron without its lone face.
 
     The lone face is that of s = lo - 1 for e = 1, of s = hi + 1 for e = -1.
     """

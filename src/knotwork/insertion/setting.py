@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -64,12 +65,12 @@ class Setting:
 
     @cached_property
     def columns(self) -> Array:
-        """The last one of n + 1 columns of the insertion matrix that hold row i: `where`, but old vertices have their own."""
+        """The last of the n + 1 columns of the insertion matrix that hold row i."""
         return np.where(self.old < 0, self.where, np.clip(self.where, self.old, self.old + self.n))
 
     @cached_property
     def groups(self) -> tuple[Array, Array]:
-        """The first vertices of groups of up to n + 1 that affect one new segment, and its old interval; -1: all are old."""
+        """First vertices of groups of up to n + 1 that affect one new segment, and its old interval; -1: all are old."""
         old, n, T = self.old.tolist(), self.n, self.T.tolist()
         interval = np.clip(np.searchsorted(self.U, self.T, "right") - 1, *self.ends).tolist()
         lo, hi = self.U[self.n], self.U[len(self.P)]
@@ -97,11 +98,17 @@ class Setting:
     # ---- running a kernel of `steps` ------------------------------------------------------------------------------
 
     def _arrays(self) -> tuple[Array, Array, Array, Array, Any]:
-        """Return the result and what the kernels use: rows A and C of n + 1 points, a stack, the number of coordinates."""
+        """Return the result, and what kernels use: rows A and C of n + 1 points, a stack, the number of coordinates."""
         (N, d), n, dtype = self.P.shape, self.n, self.P.dtype
         out = empty((N + len(self.W), d), dtype)
         rows = n.bit_length() + 4
-        return out, np.empty((rows, n + 1, d), dtype), np.empty((n + 1, d), dtype), np.empty((rows, 2), np.intp), extent(d)
+        return (
+            out,
+            np.empty((rows, n + 1, d), dtype),
+            np.empty((n + 1, d), dtype),
+            np.empty((rows, 2), np.intp),
+            extent(d),
+        )
 
     def by_intervals(self, method: Kernel) -> Array:
         """Run a knot-oriented method."""
@@ -119,8 +126,8 @@ class Setting:
 
     @cached_property
     def one(self) -> Any:
-        """1 in the arithmetic of the knots."""
-        return self.U[0] - self.U[0] + 1
+        """1 in the arithmetic of the knots; among exact numbers a plain Fraction, with which nothing is counted."""
+        return Fraction(1) if self.U.dtype == object else self.U.dtype.type(1)
 
     def by_rows(self, method: Kernel) -> Array:
         """Return the matrix of a row-oriented method: row i has columns[i] - n … columns[i]."""
@@ -152,7 +159,7 @@ class Setting:
 
     def by_vertices_of_triangles(self, method: Kernel) -> Array:
         """Run a vertex-oriented method that keeps the whole division triangle of an interval."""
-        out, A, C, _, D = self._arrays()
+        out, _, C, _, D = self._arrays()
         F = np.empty((self.n + 1, *C.shape), C.dtype)
         method(out, self.P, self.U, self.T, self.old, self.where, self.n, F, C, D)
         return out

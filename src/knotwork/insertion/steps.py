@@ -43,7 +43,7 @@ def vertex(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def by_vertices(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untyped-def]
-    """Find each new vertex from the old ones of interval where[i]; it is the old vertex old[i] where that is not negative."""
+    """Find each new vertex from the old ones of interval where[i], unless it is the old vertex old[i] >= 0."""
     q = -1
     for i in range(len(out)):
         if old[i] >= 0:

@@ -1,0 +1,294 @@
+"""Every method of knot insertion, as data: its name, where the text has it, how it is run, what it should cost.
+
+A method is added by writing one kernel in the module of its family, and one entry here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from knotwork.arithmetic.counting import Counting, Counts, counting
+from knotwork.banded import Banded, along, as_blocks
+from knotwork.errors import ParameterError
+from knotwork.insertion import factored, forms, goldman, knotwise, matrix, oslo, predictions, sablonniere
+from knotwork.insertion.insert import _around, missing_knots, refine_to
+from knotwork.insertion.predictions import Formula, Size
+from knotwork.insertion.setting import Setting
+from knotwork.kernel import Kernel
+from knotwork.numbers import Array
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+FORMS = ("standard", "rewritten", "factored", "matrix")
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method of knot insertion.
+
+    Attributes
+    ----------
+    name, family : str
+    form : {"standard", "rewritten", "factored", "matrix"}
+        How two points are combined (§4.10), or that the matrix is found (§4.11).
+    section : str
+        Where the text has it; empty if it goes beyond.
+    summary : str
+    points : callable
+        Takes a `Setting`, returns the new points.
+    costs : callable
+        Takes a `Size`, returns the `Counts` that the text derives.
+    bound : bool
+        Whether the text's count is an upper bound even if groups are complete.
+    """
+
+    name: str
+    family: str
+    form: str
+    section: str
+    summary: str
+    points: Callable[[Setting], Array]
+    costs: Callable[[Size], Counts]
+    bound: bool = False
+
+    def run(self, spline: Spline, knots: Any, axis: int = 0) -> Spline:
+        """Return the spline with further knots: as `knotwork.insert`, by this method."""
+        axis = spline.axis(axis)
+        space = spline.spaces[axis]
+        new = space.new_knots(knots)
+        setting, part = _setting(spline, axis, new)
+        A, _, B = as_blocks(spline.coefficients, axis).shape
+        out = np.ascontiguousarray(self.points(setting)[part].reshape(-1, A, B).transpose(1, 0, 2))
+        return spline.with_axis(axis, space.with_knots(new), along(out, spline.coefficients, axis))
+
+    def predict(
+        self, n: int, m: int, r: int | None = None, p: int | None = None, d: int = 3, intervals: int = 1
+    ) -> Counts:
+        """Return the text's count for degree n, m new knots, r vertices to be found, p old ones, dimension d.
+
+        By default all knots are in one interval of one segment: r = m + n - 1, p = n + 1. `intervals` get new knots.
+        """
+        r = m + n - 1 if r is None else r
+        return self.costs(Size(n, m, r, n + 1 if p is None else p, d, intervals))
+
+
+def _setting(spline: Spline, axis: int, new: Array) -> tuple[Setting, slice]:
+    """Return what a method works on to insert sorted knots on one axis, and which of its points are asked for.
+
+    A periodic space is unrolled.
+    """
+    space, blocks = spline.spaces[axis], as_blocks(spline.coefficients, axis)
+    n = space.degree
+    P = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(blocks.shape[1], -1)
+    if not space.periodic:
+        return Setting(space.knots, new, P, n), slice(None)
+    U, W, _, first, left = _around(space, new)
+    N = len(U) - n - 1
+    lo, hi = np.searchsorted(W, U[n], "left"), np.searchsorted(W, U[N], "right")
+    start = first - int(lo)
+    return Setting(U, W[lo:hi], P[space.wrapped(-left, N)], n), slice(start, start + len(P) + len(new))
+
+
+def _in_three_forms(
+    name: str,
+    family: str,
+    section: str,
+    summary: str,
+    kernel: Kernel,
+    drive: Callable[[Setting, Kernel], Array],
+    combinations: Formula,
+    bound: bool = False,
+) -> list[Method]:
+    """Return a point method in its three forms; over δⁿ a knot-oriented one has the last rounds of §3.2 in addition."""
+    over_delta = predictions.with_right_knots(combinations) if drive is Setting.by_intervals else combinations
+    costs = {
+        "standard": predictions.standard(combinations),
+        "rewritten": predictions.rewritten(combinations),
+        "factored": predictions.factored(over_delta),
+    }
+
+    def entry(form: str, variant: Kernel) -> Method:
+        full = name if form == "standard" else f"{name}-{form}"
+        return Method(full, family, form, section, summary, lambda s: drive(s, variant), costs[form], bound)
+
+    return [entry(form, variant) for form, variant in forms.in_forms(kernel).items()]
+
+
+def _factored(
+    name: str, section: str, summary: str, kernel: Kernel, combinations: Formula, costs: Any = None, bound: bool = False
+) -> Method:
+    costs = costs or predictions.factored(combinations)
+    return Method(name, "factored", "factored", section, summary, lambda s: s.by_intervals(kernel), costs, bound)
+
+
+def _matrix(name: str, family: str, section: str, summary: str, points: Any, costs: Any, bound: bool = False) -> Method:
+    return Method(name, family, "matrix", section, summary, points, costs, bound)
+
+
+def _merge(s: Setting) -> Array:
+    space = SplineSpace.trusted(s.n, s.U)
+    spline = Spline.trusted((space,), s.P)
+    return refine_to(spline, 0, SplineSpace.trusted(s.n, s.T), s.W).coefficients
+
+
+_oslo_factored = forms.in_forms(oslo.oslo)["factored"]
+
+METHODS: dict[str, Method] = {
+    method.name: method
+    for method in [
+        *_in_three_forms(
+            "boehm", "boehm", "§4.5", "one knot at a time, n combinations each",
+            knotwise.boehm, Setting.by_intervals, predictions.boehm,
+        ),
+        *_in_three_forms(
+            "boehm-multiple", "boehm", "§2.2.3", "one value at a time, equal knots by one triangle",
+            knotwise.blocked, Setting.by_intervals, predictions.boehm, bound=True,
+        ),
+        *_in_three_forms(
+            "oslo", "oslo", "§4.6", "Oslo II: one triangle a new vertex",
+            oslo.oslo, Setting.by_vertices, predictions.oslo,
+        ),
+        *_in_three_forms(
+            "oslo-improved", "oslo", "§4.9", "one triangle a new vertex, with a level for each new knot alone",
+            oslo.improved, Setting.by_vertices, predictions.oslo, bound=True,
+        ),
+        *_in_three_forms(
+            "goldman", "goldman", "§4.9", "two triangles for n + 1 knots",
+            goldman.goldman, Setting.by_intervals, predictions.boehm,
+        ),
+        *_in_three_forms(
+            "goldman-modified", "goldman", "§4.9", "two triangles for n + 1 vertices",
+            goldman.modified, Setting.by_segments, predictions.modified_goldman,
+        ),
+        *_in_three_forms(
+            "goldman-modified-improved", "goldman", "§4.9", "the same, where old knots stay as they are",
+            goldman.modified_improved, Setting.by_segments, predictions.boehm, bound=True,
+        ),
+        *_in_three_forms(
+            "sablonniere", "sablonniere", "§4.7", "a tetrahedron for n + 1 vertices",
+            sablonniere.sablonniere, Setting.by_segments, predictions.sablonniere,
+        ),
+        *_in_three_forms(
+            "sablonniere-improved", "sablonniere", "§4.9", "a tetrahedron for n + 1 vertices, where old knots stay",
+            sablonniere.improved, Setting.by_segments, predictions.sablonniere, bound=True,
+        ),
+        *_in_three_forms(
+            "sablonniere-recursive", "sablonniere", "§4.9", "a tetrahedron for n + 1 vertices, by halves",
+            sablonniere.recursive_halves, Setting.by_segments, predictions.sablonniere_recursive,
+        ),
+        *_in_three_forms(
+            "goldman-sablonniere", "sablonniere", "§4.9", "two tetrahedra for 3n + 1 knots",
+            sablonniere.goldman_sablonniere, Setting.by_intervals, predictions.goldman_sablonniere,
+        ),
+        *_in_three_forms(
+            "goldman-sablonniere-recursive", "sablonniere", "§4.9", "two tetrahedra for 3n + 1 knots, by halves",
+            sablonniere.goldman_recursive, Setting.by_intervals, predictions.goldman_sablonniere_recursive,
+        ),
+        _factored("factored", "§3.2", "step 4: the new knots ascending", factored.step_4, predictions.step_4),
+        _factored("factored-nested", "§3.2", "step 4': nested multiplication", factored.nested, predictions.step_4),
+        _factored("factored-backward", "§3.6.1", "the new knots descending", factored.backwards, predictions.step_4),
+        _factored("factored-split", "§3.6.1", "part forward, part backward", factored.split, predictions.both_ways),
+        _factored(
+            "factored-multiple", "§3.6.6", "step 4, where equal knots cost nothing",
+            factored.multiple, predictions.step_4, bound=True,
+        ),
+        _factored(
+            "factored-equal", "§3.6.7", "step 4, by additions alone while knots are evenly spaced",
+            factored.equal, predictions.step_4, predictions.evenly_spaced,
+        ),
+        Method(
+            "factored-oslo", "factored", "factored", "§3.6.2", "a triangle a new vertex, without divisions",
+            lambda s: s.by_vertices(_oslo_factored), predictions.factored(predictions.oslo),
+        ),
+        Method(
+            "factored-reduced", "factored", "factored", "§3.6.3", "the same; neighbouring intervals share the start-up",
+            lambda s: s.by_vertices_of_triangles(factored.reduced),
+            predictions.factored(predictions.oslo, reduced=True),
+        ),
+        _matrix(
+            "boehm-column", "boehm", "§4.17", "columns, by Boehm's algorithm for unit vectors",
+            lambda s: s.applied(s.by_columns(matrix.columns)), predictions.boehm_columns, bound=True,
+        ),
+        _matrix(
+            "oslo-row", "oslo", "§4.11", "Oslo I: discrete B-splines, a triangle top down for each row",
+            lambda s: s.applied(s.by_rows(matrix.rows)), predictions.oslo_rows,
+        ),
+        _matrix(
+            "goldman-column", "goldman", "§4.17", "two triangles for all columns of n + 1 knots",
+            lambda s: s.by_intervals_with_weights(matrix.goldman_columns), predictions.goldman_columns,
+        ),
+        _matrix(
+            "goldman-row", "goldman", "§4.17", "a triangle top down for each new vertex of n + 1 knots",
+            lambda s: s.by_intervals_with_weights(matrix.goldman_rows), predictions.goldman_rows,
+        ),
+        _matrix(
+            "morken", "morken", "§4.11", "each entry from three neighbours (Eq. 4.8)",
+            lambda s: s.applied(s.by_rows(matrix.morken)), predictions.morken, bound=True,
+        ),
+        _matrix(
+            "merge", "oslo", "§4.9", "Oslo I improved, as a merge of old and new knots: what `insert` uses",
+            _merge, predictions.oslo_rows, bound=True,
+        ),
+    ]
+}  # fmt: skip
+
+
+def method_named(name: Any) -> Method:
+    """Return a method by its name, or raise with the names there are."""
+    try:
+        return METHODS[name]
+    except (KeyError, TypeError):
+        raise ParameterError(f"method {name!r} given; expected one of {', '.join(METHODS)}") from None
+
+
+def count(name: str, spline: Spline, knots: Any, axis: int = 0) -> Counts:
+    """Return what a method does to insert knots: its one source, run over numbers that count.
+
+    Parameters
+    ----------
+    name : str
+        One of `METHODS`.
+    spline, knots, axis
+        As for `knotwork.insert`; rational splines count as their homogeneous coordinates.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> count("boehm", c, [0.25, 0.5, 0.75])
+    Counts(additions=45, multiplications=36, divisions=9, combinations=9)
+    >>> METHODS["boehm"].predict(n=3, m=3, d=2)
+    Counts(additions=45, multiplications=36, divisions=9, combinations=9)
+    """
+    method = method_named(name)
+    axis = spline.axis(axis)
+    space = spline.spaces[axis]
+    new = space.new_knots(knots)
+    counted = SplineSpace.trusted(space.degree, Counting.array(space.knots), space.periodic)
+    points = spline.with_axis(axis, counted, Counting.array(spline.coefficients))
+    setting, _ = _setting(points, axis, Counting.array(new))
+    with counting() as counts:
+        method.points(setting)
+    return counts
+
+
+def matrix_by(name: str, space: SplineSpace, refined: SplineSpace) -> Banded:
+    """Return the insertion matrix as a method finds it: from n + 1 colours of unit points; a row sees one of each."""
+    method, new = method_named(name), missing_knots(space, refined)
+    n = space.degree
+    index = np.arange(space.dimension)
+    unrolled = Spline.trusted((space,), index)
+    setting, part = _setting(unrolled, 0, new)
+    owner = setting.P[:, 0]
+    colours = np.zeros((len(owner), n + 1), int)
+    colours[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
+    setting = Setting(setting.U, setting.W, colours * setting.one, n)
+    out, last = method.points(setting)[part], setting.columns[part]
+    columns = (last - n)[:, None] + np.arange(n + 1)
+    entries = np.take_along_axis(out, columns % (n + 1), axis=1)
+    first = owner[columns[:, 0]]
+    return Banded.packed(first, np.full(len(first), n), entries, space.dimension, wraps=space.periodic)
