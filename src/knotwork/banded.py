@@ -16,7 +16,7 @@ _set = object.__setattr__
 
 
 @kernel
-def weighted_sum(out, a, i, P, s, w, D):  # type: ignore[no-untyped-def]
+def short_sum(out, a, i, P, s, w, D):  # type: ignore[no-untyped-def]
     """out[a, i] = Σ w[r] · P[a, s + r] for a tuple of weights."""
     for c in range(len(D)):
         total = w[0] * P[a, s, c]
@@ -26,22 +26,28 @@ def weighted_sum(out, a, i, P, s, w, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def long_sum(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
+    """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v."""
+    for c in range(len(D)):
+        total = E[j, 0] * P[a, s, c]
+        for r in range(1, v + 1):
+            total = total + E[j, r] * P[a, s + r, c]
+        out[a, i, c] = total
+
+
+@kernel
 def combination(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
     """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v; one vector loop for the short sums."""
     if v == 0:
-        weighted_sum(out, a, i, P, s, (E[j, 0],), D)
+        short_sum(out, a, i, P, s, (E[j, 0],), D)
     elif v == 1:
-        weighted_sum(out, a, i, P, s, (E[j, 0], E[j, 1]), D)
+        short_sum(out, a, i, P, s, (E[j, 0], E[j, 1]), D)
     elif v == 2:
-        weighted_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2]), D)
+        short_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2]), D)
     elif v == 3:
-        weighted_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2], E[j, 3]), D)
+        short_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2], E[j, 3]), D)
     else:
-        for c in range(len(D)):
-            total = E[j, 0] * P[a, s, c]
-            for r in range(1, v + 1):
-                total = total + E[j, r] * P[a, s + r, c]
-            out[a, i, c] = total
+        long_sum(out, a, i, P, s, E, j, v, D)
 
 
 @kernel

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import combination, weighted_sum
+from knotwork.banded import combination, long_sum, short_sum
 from knotwork.kernel import extent, kernel
 from knotwork.knots import merge, merged, next_knot, old_among, require_multiplicity
 from knotwork.numbers import Array, empty
@@ -53,6 +53,21 @@ def three_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def many_new(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def]
+    """E[i] = the weights of row i where any v arguments are new."""
+    zero = U[hu] - U[hu]
+    E[i, 0] = zero + 1
+    for k in range(1, v + 1):
+        x = W[lw + k - 1]
+        saved = zero
+        for r in range(k):
+            b = (x - U[lu - k + r]) / (U[hu + r] - U[lu - k + r]) * E[i, r]
+            E[i, r] = saved + (E[i, r] - b)
+            saved = b
+        E[i, k] = saved
+
+
+@kernel
 def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def]
     """E[i, r] = weight of P[lu-1-v+r] in the blossom at U[lu … hu-1] and W[lw … lw+v-1]: row i of the insertion matrix.
 
@@ -67,16 +82,7 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
     elif v == 3:
         E[i, 0], E[i, 1], E[i, 2], E[i, 3] = three_new(U, lu, hu, W, lw)
     else:
-        zero = U[hu] - U[hu]
-        E[i, 0] = zero + 1
-        for k in range(1, v + 1):
-            x = W[lw + k - 1]
-            saved = zero
-            for r in range(k):
-                b = (x - U[lu - k + r]) / (U[hu + r] - U[lu - k + r]) * E[i, r]
-                E[i, r] = saved + (E[i, r] - b)
-                saved = b
-            E[i, k] = saved
+        many_new(U, lu, hu, W, lw, v, E, i)
 
 
 @kernel
@@ -87,14 +93,14 @@ def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):  # type: ignore[no-unty
         for c in range(len(D)):
             out[0, i, c] = P[0, s, c]
     elif v == 1:
-        weighted_sum(out, 0, i, P, s, one_new(U, lu, hu, W, lw), D)
+        short_sum(out, 0, i, P, s, one_new(U, lu, hu, W, lw), D)
     elif v == 2:
-        weighted_sum(out, 0, i, P, s, two_new(U, lu, hu, W, lw), D)
+        short_sum(out, 0, i, P, s, two_new(U, lu, hu, W, lw), D)
     elif v == 3:
-        weighted_sum(out, 0, i, P, s, three_new(U, lu, hu, W, lw), D)
+        short_sum(out, 0, i, P, s, three_new(U, lu, hu, W, lw), D)
     else:
-        discrete_bsplines(U, lu, hu, W, lw, v, E, 0)
-        combination(out, 0, i, P, s, E, 0, v, D)
+        many_new(U, lu, hu, W, lw, v, E, 0)
+        long_sum(out, 0, i, P, s, E, 0, v, D)
 
 
 @kernel
