@@ -70,7 +70,7 @@ class Setting:
 
     @cached_property
     def groups(self) -> tuple[Array, Array]:
-        """First vertices of groups of up to n + 1 that affect one new segment, and its old interval; -1: all are old."""
+        """First vertices of groups of up to n + 1 that affect one new segment, and its interval; -1: all are old."""
         old, n, T = self.old.tolist(), self.n, self.T.tolist()
         interval = np.clip(np.searchsorted(self.U, self.T, "right") - 1, *self.ends).tolist()
         lo, hi = self.U[self.n], self.U[len(self.P)]
