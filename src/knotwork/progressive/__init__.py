@@ -3,15 +3,19 @@
 One polynomial segment of degree n over 2n homogeneous knots, which need be neither sorted nor finite.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from knotwork.progressive.bases import bernstein, bspline_segment, hermite_primal, monomial, newton_dual, power
 from knotwork.progressive.change import METHODS, Insertion, change_basis, insert
 from knotwork.progressive.curve import Curve
-from knotwork.progressive.diagrams import FIGURES, Diagram, diagram, figure
 from knotwork.progressive.homogeneous import DELTA
 from knotwork.progressive.matching import Match, matches
 from knotwork.progressive.newton import divided_differences, evenly_spaced, newton_dual_by_differences
 from knotwork.progressive.segments import blossom, segment
 from knotwork.progressive.sequence import Sequence
+
+if TYPE_CHECKING:
+    from knotwork.progressive.diagrams import FIGURES, Diagram, diagram, figure
 
 __all__ = [
     "DELTA",
@@ -39,3 +43,12 @@ __all__ = [
     "power",
     "segment",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load the diagrams when one is first asked for."""
+    if name not in ("FIGURES", "Diagram", "diagram", "figure"):
+        raise AttributeError(f"module 'knotwork.progressive' has no attribute {name!r}")
+    from knotwork.progressive import diagrams
+
+    return getattr(diagrams, name)
