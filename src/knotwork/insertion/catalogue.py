@@ -14,9 +14,9 @@ import numpy as np
 from knotwork.arithmetic.counting import Counting, Counts, counting
 from knotwork.banded import Banded, along, as_blocks
 from knotwork.errors import ParameterError
-from knotwork.insertion import factored, forms, goldman, knotwise, matrix, oslo, predictions, sablonniere
-from knotwork.insertion.insert import _around, missing_knots, refine_to
+from knotwork.insertion import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
 from knotwork.insertion.predictions import Formula, Size
+from knotwork.insertion.refinement import around, missing_knots, refine_to
 from knotwork.insertion.setting import Setting
 from knotwork.kernel import Kernel
 from knotwork.numbers import Array
@@ -65,6 +65,19 @@ class Method:
         out = np.ascontiguousarray(self.points(setting)[part].reshape(-1, A, B).transpose(1, 0, 2))
         return spline.with_axis(axis, space.with_knots(new), along(out, spline.coefficients, axis))
 
+    def matrix(self, space: SplineSpace, refined: SplineSpace) -> Banded:
+        """Return the insertion matrix as this method finds it: from n + 1 colours of unit points; one of each a row."""
+        new, n = missing_knots(space, refined), space.degree
+        setting, part = _setting(Spline.trusted((space,), np.arange(space.dimension)), 0, new)
+        owner = setting.P[:, 0]
+        colours = np.zeros((len(owner), n + 1), int)
+        colours[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
+        setting = Setting(setting.U, setting.W, colours * setting.one, n)
+        columns = (setting.columns[part] - n)[:, None] + np.arange(n + 1)
+        entries = np.take_along_axis(self.points(setting)[part], columns % (n + 1), axis=1)
+        first = owner[columns[:, 0]]
+        return Banded.packed(first, np.full(len(first), n), entries, space.dimension, wraps=space.periodic)
+
     def predict(
         self, n: int, m: int, r: int | None = None, p: int | None = None, d: int = 3, intervals: int = 1
     ) -> Counts:
@@ -86,7 +99,7 @@ def _setting(spline: Spline, axis: int, new: Array) -> tuple[Setting, slice]:
     P = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(blocks.shape[1], -1)
     if not space.periodic:
         return Setting(space.knots, new, P, n), slice(None)
-    U, W, _, first, left = _around(space, new)
+    U, W, _, first, left = around(space, new)
     N = len(U) - n - 1
     lo, hi = np.searchsorted(W, U[n], "left"), np.searchsorted(W, U[N], "right")
     start = first - int(lo)
@@ -142,11 +155,11 @@ METHODS: dict[str, Method] = {
     for method in [
         *_in_three_forms(
             "boehm", "boehm", "§4.5", "one knot at a time, n combinations each",
-            knotwise.boehm, Setting.by_intervals, predictions.boehm,
+            boehm.boehm, Setting.by_intervals, predictions.boehm,
         ),
         *_in_three_forms(
             "boehm-multiple", "boehm", "§2.2.3", "one value at a time, equal knots by one triangle",
-            knotwise.blocked, Setting.by_intervals, predictions.boehm, bound=True,
+            boehm.blocked, Setting.by_intervals, predictions.boehm, bound=True,
         ),
         *_in_three_forms(
             "oslo", "oslo", "§4.6", "Oslo II: one triangle a new vertex",
@@ -274,21 +287,3 @@ def count(name: str, spline: Spline, knots: Any, axis: int = 0) -> Counts:
     with counting() as counts:
         method.points(setting)
     return counts
-
-
-def matrix_by(name: str, space: SplineSpace, refined: SplineSpace) -> Banded:
-    """Return the insertion matrix as a method finds it: from n + 1 colours of unit points; a row sees one of each."""
-    method, new = method_named(name), missing_knots(space, refined)
-    n = space.degree
-    index = np.arange(space.dimension)
-    unrolled = Spline.trusted((space,), index)
-    setting, part = _setting(unrolled, 0, new)
-    owner = setting.P[:, 0]
-    colours = np.zeros((len(owner), n + 1), int)
-    colours[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
-    setting = Setting(setting.U, setting.W, colours * setting.one, n)
-    out, last = method.points(setting)[part], setting.columns[part]
-    columns = (last - n)[:, None] + np.arange(n + 1)
-    entries = np.take_along_axis(out, columns % (n + 1), axis=1)
-    first = owner[columns[:, 0]]
-    return Banded.packed(first, np.full(len(first), n), entries, space.dimension, wraps=space.periodic)

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from knotwork.banded import Banded, along, as_blocks
-from knotwork.errors import KnotError
-from knotwork.insertion.boehm import boehm
-from knotwork.insertion.merge import refined, rows_of_matrix
-from knotwork.kernel import extent
-from knotwork.knots import combine
-from knotwork.numbers import Array
+from knotwork.banded import Banded
+from knotwork.insertion.refinement import insert_one, matrix_to, missing_knots, refine
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
+if TYPE_CHECKING:
+    from knotwork.insertion.catalogue import Method
 
-def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
+
+def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> Spline:
     """Return the same spline with further knots.
 
     Parameters
@@ -27,11 +23,15 @@ def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
         New knots in the domain of the parameter, in any order; repeats raise the multiplicity.
     axis : int
         Which parameter of a surface or volume.
+    method : str
+        "auto", or one of `knotwork.insertion.METHODS`: all give the same spline, up to rounding.
 
     Raises
     ------
     KnotError
         If a knot is not finite, lies outside the domain, or would get a multiplicity above degree + 1.
+    ParameterError
+        If there is no such method.
 
     Notes
     -----
@@ -45,6 +45,8 @@ def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
     >>> kw.insert(c, 0.5).points.tolist()
     [[0.0, 0.0], [0.5, 1.0], [2.0, 2.0], [3.5, 1.0], [4.0, 0.0]]
     """
+    if method != "auto":
+        return _method(method).run(spline, knots, axis)
     spaces = spline.spaces
     if type(axis) is not int or axis:
         axis = spline.axis(axis)
@@ -52,65 +54,19 @@ def insert(spline: Spline, knots: Any, axis: int = 0) -> Spline:
     if isinstance(knots, list | tuple) and len(knots) == 1 and isinstance(knots[0], float):
         knots = knots[0]
     if isinstance(knots, float) and not space.periodic and not space.exact:
-        return _one(spline, knots, axis)
-    T, P = _refined(spline, axis, space.new_knots(knots))
-    return spline.with_axis(axis, SplineSpace.trusted(space.degree, T, space.periodic), P)
+        return insert_one(spline, knots, axis)
+    return refine(spline, axis, space.new_knots(knots))
 
 
-def _one(spline: Spline, u: float, axis: int) -> Spline:
-    """Insert one float knot into a space that is not periodic."""
-    space, P = spline.spaces[axis], spline.coefficients
-    t, n = space.knots, space.degree
-    N = len(t) - n - 1
-    if not t[n] <= u <= t[N]:
-        space.new_knots(u)  # says what is wrong with it
-    blocks = as_blocks(P, axis)
-    A, _, B = blocks.shape
-    W = np.empty((A, N + 1, B), P.dtype)
-    s = np.empty(len(t) + 1)
-    m = boehm(t, blocks, n, n, N - 1, u, s, W, extent(B))
-    if m > n:
-        raise KnotError(f"knot {u} has multiplicity {m + 1}; degree {n} allows at most {n + 1}")
-    return spline.with_axis(axis, SplineSpace.trusted(n, s), along(W, P, axis))
-
-
-def refine_to(spline: Spline, axis: int, target: SplineSpace, new: Array) -> Spline:
-    """Return the spline over `target`, which has the sorted knots `new` in addition (trusted)."""
-    return spline.with_axis(axis, target, _refined(spline, axis, new)[1])
-
-
-def _refined(spline: Spline, axis: int, new: Array) -> tuple[Array, Array]:
-    """Return the knots on one axis and the coefficients after inserting sorted knots inside the domain."""
-    space, P = spline.spaces[axis], as_blocks(spline.coefficients, axis)
-    n, rows = space.degree, space.dimension + len(new)
-    if space.periodic:
-        t, W, stop, lo, left = _around(space, new)
-        P = np.ascontiguousarray(P[:, space.wrapped(-left, len(t) - n - 1)])
-        T, out = refined(t, W, stop, n, P, lo, rows)
-        T = T[: rows + 1].copy()
-    else:
-        T, out = refined(space.knots, new, space.dimension, n, P, 0, rows)
-    return T, along(out, spline.coefficients, axis)
-
-
-def _around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int]:
-    """Return a periodic space's knots unrolled, its new knots likewise, and where knot 0 stands in the merge of both.
-
-    The merge puts old knots before equal new ones everywhere: `stop` is beyond the end. The last two numbers are the
-    merged knots and the old knots before knot 0.
-    """
-    t, left = space.unrolled
-    W, before = space.images(new)
-    return t, W, len(t), left + before, left
-
-
-def insertion_matrix(space: SplineSpace, refined: SplineSpace) -> Banded:
+def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: str = "auto") -> Banded:
     """Return the matrix that takes control points over `space` to those over `refined`.
 
     Parameters
     ----------
     space, refined : SplineSpace
         Of equal degree; `refined` has all knots of `space`, and further ones inside the domain.
+    method : str
+        "auto", or one of `knotwork.insertion.METHODS`; a point method is run on unit points.
 
     Returns
     -------
@@ -121,29 +77,16 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace) -> Banded:
     ------
     KnotError
         If `refined` is not a refinement of `space`.
+    ParameterError
+        If there is no such method.
     """
+    if method != "auto":
+        return _method(method).matrix(space, refined)
     return matrix_to(space, refined, missing_knots(space, refined))
 
 
-def matrix_to(space: SplineSpace, refined: SplineSpace, new: Array) -> Banded:
-    """Return the insertion matrix to `refined`, which has the sorted knots `new` in addition (trusted)."""
-    n = space.degree
-    if not space.periodic:
-        start, count, E = rows_of_matrix(space.knots, new, space.dimension, n, 0, refined.dimension)
-        return Banded.packed(start, count, E, space.dimension)
-    t, W, stop, lo, left = _around(space, new)
-    start, count, E = rows_of_matrix(t, W, stop, n, lo, refined.dimension)
-    return Banded.packed((start - left) % space.dimension, count, E, space.dimension, wraps=True)
+def _method(name: str) -> Method:
+    """Return a method of the catalogue, which is loaded only for those who ask for one."""
+    from knotwork.insertion.catalogue import method_named
 
-
-def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:
-    """Return the knots that `refined` has and `space` has not, with multiplicity; raise if it is no refinement."""
-    if refined.degree != space.degree or refined.periodic != space.periodic:
-        raise KnotError(f"{refined!r} does not refine {space!r}: expected equal degrees, both periodic or neither")
-    if not space <= refined:
-        raise KnotError(f"{refined!r} does not refine {space!r}: it lacks knots, or its domain differs")
-    new = combine(refined.knots, space.knots, np.subtract)
-    a, b = space.domain
-    if len(new) and (new[0] < a or new[-1] > b):
-        raise KnotError(f"{refined!r} has new knots outside the domain [{a}, {b}]")
-    return new
+    return method_named(name)

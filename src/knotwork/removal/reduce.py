@@ -16,7 +16,7 @@ import numpy as np
 
 from knotwork.banded import along, as_blocks
 from knotwork.errors import ParameterError
-from knotwork.insertion.insert import matrix_to, refine_to
+from knotwork.insertion.refinement import matrix_to, refine_to
 from knotwork.knots import distinct, multiplicities
 from knotwork.least_squares import least_squares
 from knotwork.numbers import Array, in_arithmetic_of, real_numbers

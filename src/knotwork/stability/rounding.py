@@ -19,7 +19,7 @@ from fractions import Fraction
 import numpy as np
 
 from knotwork.errors import KnotError, PointError
-from knotwork.insertion.insert import missing_knots, refine_to
+from knotwork.insertion.refinement import missing_knots, refine_to
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
