@@ -59,11 +59,12 @@ class Method:
         """Return the spline with further knots: as `knotwork.insert`, by this method."""
         axis = spline.axis(axis)
         space = spline.spaces[axis]
-        new = space.new_knots(knots)
+        refined, new = space.refinement(knots)
         setting, part = _setting(spline, axis, new)
         A, _, B = as_blocks(spline.coefficients, axis).shape
-        out = np.ascontiguousarray(self.points(setting)[part].reshape(-1, A, B).transpose(1, 0, 2))
-        return spline.with_axis(axis, space.with_knots(new), along(out, spline.coefficients, axis))
+        points = self.points(setting)[part].view(spline.coefficients.dtype)
+        out = np.ascontiguousarray(points.reshape(-1, A, B).transpose(1, 0, 2))
+        return spline.with_axis(axis, refined, along(out, spline.coefficients, axis))
 
     def matrix(self, space: SplineSpace, refined: SplineSpace) -> Banded:
         """Return the insertion matrix as this method finds it: from n + 1 colours of unit points; one of each a row."""
@@ -92,11 +93,13 @@ class Method:
 def _setting(spline: Spline, axis: int, new: Array) -> tuple[Setting, slice]:
     """Return what a method works on to insert sorted knots on one axis, and which of its points are asked for.
 
-    A periodic space is unrolled.
+    A periodic space is unrolled. A complex coordinate is two real ones, as all weights are real.
     """
     space, blocks = spline.spaces[axis], as_blocks(spline.coefficients, axis)
     n = space.degree
     P = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(blocks.shape[1], -1)
+    if np.iscomplexobj(P):
+        P = P.view(P.real.dtype)
     if not space.periodic:
         return Setting(space.knots, new, P, n), slice(None)
     U, W, _, first, left = around(space, new)
@@ -280,7 +283,7 @@ def count(name: str, spline: Spline, knots: Any, axis: int = 0) -> Counts:
     method = method_named(name)
     axis = spline.axis(axis)
     space = spline.spaces[axis]
-    new = space.new_knots(knots)
+    _, new = space.refinement(knots)
     counted = SplineSpace.trusted(space.degree, Counting.array(space.knots), space.periodic)
     points = spline.with_axis(axis, counted, Counting.array(spline.coefficients))
     setting, _ = _setting(points, axis, Counting.array(new))
