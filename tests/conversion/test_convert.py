@@ -172,7 +172,7 @@ def test_least_squares_is_the_minimum():
     assert not (A.T @ (w * (A @ found - d))).any()
 
 
-@pytest.mark.parametrize("ell", [1, 2, 3, 20, 1000])
+@pytest.mark.parametrize("ell", [1, 2, 3, 20, 300])
 @pytest.mark.parametrize("k", [3, 4, 6])
 def test_all_interior_knots_go(k, ell):
     """Proposition 5.6.1: Oslo loses what the norm says it may; the other ways lose nothing, and auto is one of them."""
@@ -188,7 +188,7 @@ def test_all_interior_knots_go(k, ell):
             assert found.exact
     assert max(errors["auto"], errors["interpolation"], errors["least-squares"]) < 5e-14
     assert kw.convert(f, target).how == ("oslo" if ell ** ((k - 1) // 2) <= 3 else "least-squares")
-    if k == 6 and ell == 1000:
+    if k == 6 and ell == 300:
         assert errors["oslo"] > 1000 * errors["interpolation"]
     assert kw.convert(f.in_exact_arithmetic(), target, how="oslo").spline.space == target.in_exact_arithmetic()
 

@@ -98,12 +98,9 @@ def raise_degree(T, U, W, n, lo, P, out, start, count, E, R, x, D):  # type: ign
                     add_row(E, i, old - 1 - m - first, R, 2, m, share)
                 j += copies
             first, v, here = next_first, next_v, 1 - here
-            if len(P) == 1:
-                combination(out, 0, top + i, P, start[i], E, i, count[i], D)
-        if len(P) > 1:
-            for a in range(len(P)):
-                for i in range(block):
-                    combination(out, a, top + i, P, start[i], E, i, count[i], D)
+        for a in range(len(P)):
+            for i in range(block):
+                combination(out, a, top + i, P, start[i], E, i, count[i], D)
 
 
 def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
