@@ -8,7 +8,7 @@ import numpy as np
 
 from knotwork.errors import KnotError
 from knotwork.numbers import Array, numbers, real_numbers, require_finite, whole
-from knotwork.progressive.homogeneous import DELTA
+from knotwork.progressive.homogeneous import DELTA, require_affine
 from knotwork.progressive.sequence import Sequence
 
 
@@ -17,6 +17,7 @@ def bspline_segment(knots: Any) -> Sequence:
 
     The segment lives on [t_n, t_{n+1}]. To take one from a spline, see `knotwork.segment`.
     """
+    require_affine(knots, "knots", KnotError)
     t = real_numbers(knots, "knots", KnotError)
     if t.ndim != 1:
         raise KnotError(f"knots of shape {t.shape} given; expected (2n,) numbers")
@@ -66,6 +67,7 @@ def hermite_primal() -> Sequence:
 
 def flat_nodes(nodes: Any) -> Array:
     """Return nodes in a row, checked to be finite numbers."""
+    require_affine(nodes, "nodes", KnotError)
     x = numbers(nodes, "nodes", KnotError)
     if x.ndim != 1:
         raise KnotError(f"nodes of shape {x.shape} given; expected numbers in a row")

@@ -49,8 +49,15 @@ def pair(value: Any, what: str, error: type[KnotworkError] = ParameterError) -> 
 
 def affine(values: Any, what: str) -> tuple[Array, tuple[int, ...]]:
     """Return affine parameters as homogeneous pairs (m, 2), and their shape."""
+    require_affine(values, what, ParameterError)
     given = numbers(values, what, ParameterError)
     return pairs(given.reshape(-1), what, ParameterError), given.shape
+
+
+def require_affine(values: Any, what: str, error: type[KnotworkError]) -> None:
+    """Raise if `DELTA` was given, alone or in a list, where numbers are meant."""
+    if values is DELTA or (isinstance(values, list | tuple) and any(v is DELTA for v in values)):
+        raise error(f"{what}: the vector-valued δ = (1, 0) given; expected numbers")
 
 
 def require_together(what: str, *values: Any) -> None:
