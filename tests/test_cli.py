@@ -91,6 +91,8 @@ def test_the_face_of_the_command(run):
         "convert",
         "condition",
         "convert-space",
+        "count",
+        "methods",
         "plot",
     }
 

@@ -59,7 +59,7 @@ def info(files: Sequence[Path], as_json: bool) -> None:
     """
     found = [(path, kw.read(path)) for path in files]
     if as_json:
-        _print_json([{"file": str(path), "splines": [report.facts(s) for s in splines]} for path, splines in found])
+        print_json([{"file": str(path), "splines": [report.facts(s) for s in splines]} for path, splines in found])
         return
     for i, (path, splines) in enumerate(found):
         points = sum(s.coefficients.size // (s.dim + s.rational) for s in splines)
@@ -278,7 +278,7 @@ def condition(file: Path, knots: Sequence[list[float]], parts: int | None, axis:
         except KnotworkError as exc:
             raise Failure(f"{file}: spline {i}: {exc}") from exc
     if as_json:
-        _print_json({"input": str(file), "splines": rows})
+        print_json({"input": str(file), "splines": rows})
     else:
         click.echo(f"{file}: {report.counted(len(rows), 'spline')}\n\n{report.conditions(rows)}")
 
@@ -300,7 +300,7 @@ def convert(files: Sequence[Path], accuracy: float | None, flip: bool, output: P
     splines = [s for path in files for s in kw.read(path)]
     written = kw.write(output, [_flipped(s) for s in splines] if flip else splines, accuracy=accuracy)
     if as_json:
-        _print_json({"output": str(output), "splines": written.count, "bound": written.bound})
+        print_json({"output": str(output), "splines": written.count, "bound": written.bound})
     else:
         click.echo(f"{report.counted(written.count, 'spline')} written to {output}{_error_of(written.bound)}")
 
@@ -386,7 +386,7 @@ def _change(
         told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "splines": rows}
         told |= {"tolerance": allowed[0]} if allowed else {}
         told |= {"written_bound": written.bound} if written else {}
-        _print_json(told)
+        print_json(told)
         return
     limit = f", tolerance {allowed[0]:.6g}" if allowed else ""
     click.echo(f"{file}: {report.counted(len(rows), 'spline')}{limit}\n\n{report.comparison(rows)}\n")
@@ -489,5 +489,6 @@ def _error_of(bound: float) -> str:
     return f", with an error of at most {bound:.3g}" if bound else ""
 
 
-def _print_json(told: Any) -> None:
+def print_json(told: Any) -> None:
+    """Show something as JSON."""
     click.echo(json.dumps(told, indent=2, ensure_ascii=False))
