@@ -49,12 +49,10 @@ def goes(c, sequence, method):
 
 
 @each
-@pytest.mark.parametrize("method", ["auto", "oslo-original", "sablonniere", "sablonniere-optimised"])
-def test_ways_that_always_go(case, method):
-    expected = polynomials.control(case.polynomial, case.others)
-    changed = change_basis(random_curve(case), case.others, method)
-    assert changed == Curve(case.others, expected)
-    assert changed.scalar == random_curve(case).scalar
+def test_ways_that_always_go(case):
+    expected = Curve(case.others, polynomials.control(case.polynomial, case.others))
+    for method in ("auto", "oslo-original", "sablonniere", "sablonniere-optimised"):
+        assert change_basis(random_curve(case), case.others, method) == expected
 
 
 @each
