@@ -72,5 +72,5 @@ def _on_the_line(space: SplineSpace, finer: SplineSpace) -> Array:
     k, t = space.order, finer.knots
     width = t[-1:] - t[:1]
     ends = np.repeat(t[:1] - width, k), np.repeat(t[-1:] + width, k)
-    wide = [SplineSpace(space.degree, np.concatenate([ends[0], each.knots, ends[1]])) for each in (space, finer)]
-    return insertion_matrix(*wide).toarray()[k:-k, k:-k]
+    wide, wider = (SplineSpace(space.degree, np.concatenate([ends[0], each.knots, ends[1]])) for each in (space, finer))
+    return insertion_matrix(wide, wider).toarray()[k:-k, k:-k]
