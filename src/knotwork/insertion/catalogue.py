@@ -118,9 +118,11 @@ def _in_three_forms(
     drive: Callable[[Setting, Kernel], Array],
     combinations: Formula,
     bound: bool = False,
+    over_delta: Formula | None = None,
 ) -> list[Method]:
     """Return a point method in its three forms; over δⁿ a knot-oriented one has the last rounds of §3.2 in addition."""
-    over_delta = predictions.with_right_knots(combinations) if drive is Setting.by_intervals else combinations
+    if over_delta is None:
+        over_delta = predictions.with_right_knots(combinations) if drive is Setting.by_intervals else combinations
     costs = {
         "standard": predictions.standard(combinations),
         "rewritten": predictions.rewritten(combinations),
@@ -183,6 +185,7 @@ METHODS: dict[str, Method] = {
         *_in_three_forms(
             "goldman-modified-improved", "goldman", "§4.9", "the same, where old knots stay as they are",
             goldman.modified_improved, Setting.by_segments, predictions.boehm, bound=True,
+            over_delta=predictions.with_all_right_knots(predictions.boehm),
         ),
         *_in_three_forms(
             "sablonniere", "sablonniere", "§4.7", "a tetrahedron for n + 1 vertices",
@@ -247,7 +250,7 @@ METHODS: dict[str, Method] = {
         ),
         _matrix(
             "merge", "oslo", "§4.9", "Oslo I improved, as a merge of old and new knots: what `insert` uses",
-            _merge, predictions.oslo_rows, bound=True,
+            _merge, predictions.merge, bound=True,
         ),
     ]
 }  # fmt: skip

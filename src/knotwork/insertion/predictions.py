@@ -8,7 +8,7 @@ interval fall into sets of n + 1 (3n + 1 with two tetrahedra), all vertices into
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -92,6 +92,11 @@ def with_right_knots(combinations: Formula) -> Formula:
     return lambda s: combinations(s) + Fraction(s.intervals * s.n * (s.n - 1), 2)
 
 
+def with_all_right_knots(combinations: Formula) -> Formula:
+    """Over δⁿ, the n old knots at the right of every interval are put in, where over old knots they are kept."""
+    return lambda s: combinations(s) + Fraction(s.intervals * s.n * (s.n + 1), 2)
+
+
 # ---- from combinations to operations --------------------------------------------------------------------------------
 
 
@@ -134,8 +139,11 @@ def evenly_spaced(s: Size) -> Counts:
     """Additions alone while the knots of a round are evenly spaced new ones, which is so in m - n rounds (Fig. 3.10).
 
     Scaling the points takes n (d + 2) multiplications, scaling back 2n and n d divisions; the spacing of all knots is
-    looked at. n >= 2, m > n, one interval.
+    looked at. Of one interval; for n < 2 or m <= n there are no such rounds.
     """
+    if s.n < 2 or s.m <= s.n:
+        plain = factored(step_4)(s)
+        return replace(plain, additions=plain.additions + max(2 * s.n + s.m - 1, 1))
     additions = (s.m - s.n) * s.n
     c = s.m * s.n + Fraction(s.n * (s.n - 1), 2) - additions
     divided = Fraction(s.n * (s.n + 1), 2)
@@ -167,6 +175,12 @@ def oslo_rows(s: Size) -> Counts:
     n, (a, m) = s.n, _product(s)
     triangle = Fraction(n * (n + 1), 2)
     return _counts(2 * n * (n + 2) * s.r + a, triangle * s.r + m, triangle * s.r, 0)
+
+
+def merge(s: Size) -> Counts:
+    """At most a triangle of numbers a row, where both terms of each sum are multiplied."""
+    n, (a, m) = s.n, _product(s)
+    return _counts(2 * n * (n + 2) * s.r + a, n * (n + 1) * s.r + m, Fraction(n * (n + 1) * s.r, 2), 0)
 
 
 def goldman_columns(s: Size) -> Counts:
