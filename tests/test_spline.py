@@ -184,3 +184,11 @@ def test_repr_is_short_and_true(parameters, periodic):
     assert "3-D" in text
     assert ("periodic" in text) == periodic
     assert len(text) < 120
+
+
+def test_decimals_are_exact():
+    from decimal import Decimal
+
+    c = kw.curve([Decimal("0.1"), Decimal("0.3")], 1, [0, 0, Decimal("0.5"), Decimal("0.5")])
+    assert c.coefficients.tolist() == [Fraction(1, 10), Fraction(3, 10)]
+    assert c(Decimal("0.25")) == Fraction(1, 5)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -101,10 +102,10 @@ def exact(array: Array, what: str, error: type[KnotworkError]) -> Array:
 
 
 def exact_number(x: Any, what: str, error: type[KnotworkError]) -> Any:
-    """Return an int or float as the Fraction of the same value, any other number as it is."""
-    if isinstance(x, int | float | np.integer | np.floating):
+    """Return an int, float or Decimal as the Fraction of the same value, any other number as it is."""
+    if isinstance(x, int | float | Decimal | np.integer | np.floating):
         try:
-            return Fraction(x if isinstance(x, int | float) else x.item())
+            return Fraction(x if isinstance(x, int | float | Decimal) else x.item())
         except (ValueError, OverflowError):
             raise error(f"{what}: {x} given; expected finite numbers") from None
     if isinstance(x, str | bytes) or not hasattr(x, "__mul__") or not hasattr(x, "__add__") or hasattr(x, "__len__"):

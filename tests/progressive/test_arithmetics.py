@@ -319,3 +319,11 @@ def test_multilinear(case, data):
     step = c.blossom(*[t] * (case.n - 1), t + 1) - c(t)
     assert np.all(step == c.blossom(*[t] * (case.n - 1), DELTA))
     assert np.all(case.n * step == c.derivative()(t))
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-170, 1e170])
+def test_complex_knots_of_any_size(scale):
+    """The square of the modulus would overflow, or vanish."""
+    curve = Curve(np.array([1j, 2 + 1j, 0.5, 3]) * scale, [1, 2j, 3.0])
+    plain = Curve([1j, 2 + 1j, 0.5, 3], [1, 2j, 3.0])
+    np.testing.assert_allclose(curve(1.5 * scale), plain(1.5), rtol=1e-13)
