@@ -8,14 +8,19 @@ from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
 if TYPE_CHECKING:
     from knotwork.insertion.catalogue import METHODS, Method, count
+    from knotwork.insertion.diagrams import diagram
     from knotwork.insertion.factored import Startup
+    from knotwork.insertion.figures import FIGURES, figure
 
 __all__ = [
+    "FIGURES",
     "METHODS",
     "Method",
     "Startup",
     "clamp",
     "count",
+    "diagram",
+    "figure",
     "from_bezier",
     "insert",
     "insertion_matrix",
@@ -25,7 +30,15 @@ __all__ = [
 ]
 
 #: what is loaded when it is first asked for
-_LATER = {"METHODS": "catalogue", "Method": "catalogue", "count": "catalogue", "Startup": "factored"}
+_LATER = {
+    "FIGURES": "figures",
+    "METHODS": "catalogue",
+    "Method": "catalogue",
+    "Startup": "factored",
+    "count": "catalogue",
+    "diagram": "diagrams",
+    "figure": "figures",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -1,0 +1,12 @@
+"""Draw the figures of chapters 3 and 4 for the documentation: python docs/figures_insertion.py."""
+
+from pathlib import Path
+
+from knotwork.insertion import FIGURES, figure
+
+IMAGES = Path(__file__).with_name("images") / "insertion"
+
+if __name__ == "__main__":
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    for number in FIGURES:
+        (IMAGES / f"figure-{number}.svg").write_text(figure(number).svg(), encoding="utf-8")
