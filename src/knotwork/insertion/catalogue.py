@@ -17,7 +17,7 @@ from knotwork.errors import ParameterError
 from knotwork.insertion import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
 from knotwork.insertion.predictions import Formula, Size
 from knotwork.insertion.refinement import around, missing_knots, refine_to
-from knotwork.insertion.setting import Setting
+from knotwork.insertion.setting import Setting, in_real_coordinates
 from knotwork.kernel import Kernel
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
@@ -93,13 +93,11 @@ class Method:
 def _setting(spline: Spline, axis: int, new: Array) -> tuple[Setting, slice]:
     """Return what a method works on to insert sorted knots on one axis, and which of its points are asked for.
 
-    A periodic space is unrolled. A complex coordinate is two real ones, as all weights are real.
+    A periodic space is unrolled.
     """
     space, blocks = spline.spaces[axis], as_blocks(spline.coefficients, axis)
     n = space.degree
-    P = np.ascontiguousarray(blocks.transpose(1, 0, 2)).reshape(blocks.shape[1], -1)
-    if np.iscomplexobj(P):
-        P = P.view(P.real.dtype)
+    P = in_real_coordinates(blocks.transpose(1, 0, 2).reshape(blocks.shape[1], -1))
     if not space.periodic:
         return Setting(space.knots, new, P, n), slice(None)
     U, W, _, first, left = around(space, new)

@@ -13,9 +13,11 @@ import numpy as np
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.forms import copy, divide, division_triangle, factored
 from knotwork.insertion.oslo import triangle
+from knotwork.insertion.setting import in_real_coordinates
 from knotwork.insertion.steps import by_intervals, vertex
 from knotwork.kernel import extent, kernel
-from knotwork.numbers import Array, real_numbers
+from knotwork.knots import some_knots
+from knotwork.numbers import Array, real_numbers, whole
 from knotwork.spline import Spline
 
 #: what combines two points of this chapter: P + (u - a) Q
@@ -201,42 +203,45 @@ class Startup:
     def __init__(self, spline: Spline, interval: int = 0) -> None:
         space = spline.space
         breaks = space.breaks
-        if not 0 <= interval < len(breaks) - 1:
-            raise ParameterError(f"interval {interval} given; expected 0 … {len(breaks) - 2}")
+        if whole(interval, "interval", 0, ParameterError) > len(breaks) - 2:
+            raise ParameterError(f"interval {interval} given; expected an integer of 0 … {len(breaks) - 2}")
         t, left = space.unrolled
         n = space.degree
         q = int(np.searchsorted(t, breaks[interval], "right")) - 1
         self.ends = breaks[interval], breaks[interval + 1]
         self.left, self.right = t[q - n + 1 : q + 1], t[q + 1 : q + n + 1]
         points = spline.coefficients[space.wrapped(q - n - left, n + 1)]
-        self.last, self.shape = points[n:].reshape(1, -1), points.shape[1:]
-        self.edge = points.reshape(n + 1, -1).copy()
-        self.edge.setflags(write=True)
+        self.dtype, self.shape = points.dtype, points.shape[1:]
+        self.edge = in_real_coordinates(points.reshape(n + 1, -1))
+        self.last = self.edge[n:].copy()
         division_triangle(self.edge, self.left, self.right, n, extent(self.edge.shape[1]))
+        for array in (self.edge, self.last):
+            array.setflags(write=False)
 
     def blossom(self, args: Any) -> Any:
         """Return the blossom at the degree many numbers: one triangle without divisions (§3.6.2)."""
         n = len(self.left)
         x = real_numbers(args, "arguments", ParameterError)
         if x.shape != (n,):
-            raise ParameterError(f"{x.shape} arguments given; expected {n} numbers")
+            raise ParameterError(f"arguments of shape {x.shape} given; expected {n} numbers")
         F, S = self.edge.copy(), np.empty_like(self.last)
         _triangle(S[0], F, self.left, self.right, x, n, extent(S.shape[1]))
-        value = S[0].reshape(self.shape)
+        value = S[0].view(self.dtype).reshape(self.shape)
         return value[()] if value.ndim == 0 else value
 
     def vertices(self, knots: Any) -> Array:
         """Return the control points over the knots of the interval with these in it: degree + 1 + len(knots) points."""
         n, (lo, hi) = len(self.left), self.ends
-        new = np.sort(real_numbers(np.atleast_1d(knots), "knots", KnotError))
+        new = some_knots(knots, "knots", self.left)
         if len(new) and not lo <= new[0] <= new[-1] <= hi:
-            raise KnotError(f"knots {new[0]} … {new[-1]} given; expected knots in the interval [{lo}, {hi}]")
+            outside = new[0] if new[0] < lo else new[-1]
+            raise KnotError(f"knot {outside} given; expected knots in the interval [{lo}, {hi}]")
         s = np.concatenate([self.left, new, self.right])
         out = np.empty((n + len(new) + 1, self.edge.shape[1]), self.edge.dtype)
         P, D = self.edge.copy(), extent(self.edge.shape[1])
         out[0], out[-1] = P[0], self.last[0]
         rounds(out, 0, 1, P, s, n, n + len(new) - 1, D)
-        return out.reshape((len(out), *self.shape))
+        return out.view(self.dtype).reshape((len(out), *self.shape))
 
 
 _triangle = triangle.variant(combine=factored)

@@ -14,6 +14,12 @@ from knotwork.kernel import Kernel, extent
 from knotwork.numbers import Array, empty
 
 
+def in_real_coordinates(points: Array) -> Array:
+    """Return a copy of points of shape (N, d) where a complex coordinate is two real ones, as all weights are real."""
+    copied = np.array(points, order="C")
+    return copied.view(copied.real.dtype) if np.iscomplexobj(copied) else copied
+
+
 @dataclass(frozen=True, eq=False)
 class Setting:
     """Old knots U, which may repeat, sorted new knots W inside the domain, and old points P of shape (N, d)."""
