@@ -37,6 +37,14 @@ def by_intervals(out, P, U, T, gap, n, A, C, stack, K, D):  # type: ignore[no-un
 
 
 @kernel
+def load(F, P, U, q, n, D):  # type: ignore[no-untyped-def]
+    """F = the n + 1 points of interval q, over the knots of the form."""
+    for j in range(n + 1):
+        copy(F[j], P[q - n + j], D)
+    frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
+
+
+@kernel
 def vertex(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
     """S = B(x_1 … x_n) from F over a, b, which is overwritten: bound by a method."""
 
@@ -51,9 +59,7 @@ def by_vertices(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untype
         else:
             if where[i] != q:
                 q = where[i]
-                for j in range(n + 1):
-                    copy(F[j], P[q - n + j], D)
-                frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
+                load(F, P, U, q, n, D)
             for j in range(n + 1):
                 copy(R[j], F[j], D)
             vertex(out[i], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, D)
@@ -76,9 +82,7 @@ def by_segments(out, P, U, T, old, first, where, n, F, R, A, C, stack, D):  # ty
         else:
             if where[g] != q:
                 q = where[g]
-                for j in range(n + 1):
-                    copy(F[j], P[q - n + j], D)
-                frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
+                load(F, P, U, q, n, D)
             for j in range(n + 1):
                 copy(R[j], F[j], D)
             segment(out[i:], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], k, n, A, C, stack, D)
