@@ -3,7 +3,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test bench lint clean
+.PHONY: demo test bench race crossovers accuracy lint clean
 
 demo: .venv/installed  ## reduce a coastline and a drawing, and show what happened
 	$(BIN)/python examples/demo.py
@@ -13,6 +13,15 @@ test: .venv/tested
 
 bench: .venv/tested
 	$(BIN)/python benchmarks/run.py
+
+race: .venv/tested  ## all methods of knot insertion and the peers; then docs/figures_insertion_study.py draws them
+	$(BIN)/python benchmarks/race.py
+
+crossovers: .venv/tested  ## measure what insert(method="auto") goes by
+	$(BIN)/python benchmarks/race.py --crossovers
+
+accuracy: .venv/tested  ## errors of all methods of knot insertion against exact results
+	$(BIN)/python benchmarks/accuracy.py
 
 lint: .venv/linted
 	$(BIN)/ruff check

@@ -13,6 +13,7 @@ import numpy as np
 from knotwork.arithmetic.counting import Counts
 from knotwork.errors import ParameterError
 from knotwork.insertion.catalogue import METHODS, count
+from knotwork.insertion.insert import insert
 from knotwork.numbers import Array, whole
 from knotwork.spline import Spline, curve, surface
 
@@ -136,7 +137,7 @@ def _surface(n: int, d: int, m: tuple[int, int], name: str, first: int) -> Line:
         else:
             predicted += [method.predict(n, m[axis], d=d)] * curves
             measured += [count(name, each, new) for each in _curves(spline, axis)]
-        spline = method.run(spline, new, axis)
+        spline = insert(spline, new, axis)
     return Line(name, f"{'uv'[first]} first", _sum(predicted), _sum(measured), method.bound)
 
 
