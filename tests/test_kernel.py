@@ -17,9 +17,10 @@ import numpy as np
 import pytest
 
 import knotwork as kw
+from knotwork import insertion, progressive
 from knotwork import kernel as kernels
-from knotwork import progressive
 from knotwork.conversion.oslo import conversion_matrix, converted
+from knotwork.insertion import factored, forms, steps
 from knotwork.kernel import Kernel
 
 SOURCE = Path(kw.__file__).parent.parent
@@ -191,6 +192,30 @@ def test_plain_and_compiled_agree_on_progressive_curves(both, knots, dtype):
     progressive.newton_dual_by_differences(np.repeat(x, 2), x)
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_plain_and_compiled_agree_on_methods_of_insertion(both, dtype):
+    """Every method compiles a kernel, which takes about a second, so each has one degree and one number of coordinates.
+
+    Old and new knots repeat; one interval gets more than a group of 3n + 1 knots, some evenly spaced, the next gets one.
+    """
+    rng = np.random.default_rng(6)
+    evenly = (2 + np.arange(8)) / 16
+    new = np.concatenate([rng.random(3) / 16, evenly, np.repeat(0.6 + rng.random(2) / 4, 2), [1.0, 1.5, 2.75]])
+    curve = kw.curve(points(rng, dtype, 9, 2), 3, [-1.5, -1, -0.75, 0, 1, 1, 2, 2.25, 3, 3, 3, 3.5, 4])
+    few = ["boehm-multiple-rewritten", "goldman-sablonniere-recursive-factored", "factored-equal", "goldman-column",
+           "factored-reduced", "boehm-column", "morken", "merge"]  # fmt: skip
+    for name in insertion.METHODS if dtype is np.float64 else few:
+        kw.insert(curve, new, method=name)
+    start = insertion.Startup(curve)
+    start.blossom(rng.random(3))
+    start.vertices(rng.random(4))
+
+
+#: what stands for kernels that are bound by name, and texts that call them: these run as variants alone
+TEMPLATES = {steps.step, steps.by_intervals, steps.vertex, steps.by_vertices, steps.segment, steps.by_segments,
+             factored.by_vertices_reduced, forms.insert_right_knots}  # fmt: skip
+
+
 def test_every_kernel_is_tried(both):
     """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
     for module in pkgutil.walk_packages(kw.__path__, "knotwork."):
@@ -202,7 +227,8 @@ def test_every_kernel_is_tried(both):
     test_plain_and_compiled_agree_on_progressive_curves(both, np.float64, np.float64)
     test_plain_and_compiled_agree_on_progressive_curves(both, np.complex128, np.complex128)
     test_plain_and_compiled_agree_on_elimination(both)
-    reached = set(both)
+    test_plain_and_compiled_agree_on_methods_of_insertion(both, np.float64)
+    reached = set(both) | TEMPLATES
     while below := {callee for caller in reached for _, callee in caller._callees()} - reached:
         reached |= below
     missing = [k for k in kernels.KERNELS if k not in reached and k.source.__module__.startswith("knotwork.")]
