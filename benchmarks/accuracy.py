@@ -7,12 +7,10 @@ of a problem, the largest counts. Old points are random in [-1, 1]. Typical is t
 """
 
 import argparse
-import json
 import math
 import statistics
 import time
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 
@@ -20,8 +18,8 @@ import knotwork as kw
 from knotwork import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.setting import Setting
+from race import keep, short
 
-HERE = Path(__file__).parent
 DEGREES = range(1, 8)
 INTERVALS = 8
 
@@ -96,7 +94,7 @@ def main():
     kernel.mode = "always"
     start, told = time.perf_counter(), []
     for spacing, n, found in study(problems):
-        line = {name: [statistics.median(x), max(x)] for name, x in found.items()}
+        line = {name: [short(statistics.median(x)), short(max(x))] for name, x in found.items()}
         told.append({"spacing": spacing, "degree": n, "errors": line})
         groups = {"stable": [], "factored": []}
         for name, (_, worst) in line.items():
@@ -106,7 +104,7 @@ def main():
             for group, x in groups.items()
         )
         print(f"{spacing}, degree {n}: worst errors in 2^-53: {ends}", flush=True)
-    HERE.joinpath("accuracy.json").write_text(json.dumps(told, indent=1) + "\n")
+    keep("accuracy.json", told)
     print(f"{len(told) * problems} problems, {time.perf_counter() - start:.0f} s")
 
 

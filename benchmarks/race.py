@@ -3,9 +3,9 @@
     python benchmarks/race.py [--quick] [--only WORD]     the race; the numbers go to benchmarks/race.json
     python benchmarks/race.py --crossovers                where Boehm's algorithm overtakes the merge, by degree
 
-Curves, arrays in, arrays out, all kernels compiled before the clock runs. "whole" includes the bookkeeping of a method
-(which interval a new knot lies in, which vertices change); "kernel" leaves it out, as the counts of the text do. Times
-are of the machine and the moment; the ratios to `knotwork.insert` are what carries over.
+Curves, arrays in, arrays out, all kernels compiled before the clock runs. "whole" is `insert` with this method: checks and
+bookkeeping (which interval a new knot lies in, which vertices change) included; "kernel" leaves them out, as the counts
+of the text do. Times are of the machine and the moment; the ratios to `insert` as it chooses are what carries over.
 """
 
 import argparse
@@ -48,11 +48,11 @@ def problem(n, points, m, d, spread):
 
 
 def contenders(t, W, P, n):
-    """Return what is raced by name: `insert`, every method whole and its kernel alone, the peers."""
+    """Return what is raced, by name and kind: `insert`, every method whole and its kernel alone, the peers."""
     ready = Setting(t, W, P, n)
     racers = {("insert", "whole"): lambda: kw.insert(kw.curve(P, n, t), W).coefficients}
     for name, method in METHODS.items():
-        racers[name, "whole"] = lambda method=method: method.points(Setting(t, W, P, n))
+        racers[name, "whole"] = lambda name=name: kw.insert(kw.curve(P, n, t), W, method=name).coefficients
         racers[name, "kernel"] = lambda method=method: method.points(ready)
     racers["merge", "kernel"] = lambda: refined(t, W, len(P), n, P[None], 0, len(P) + len(W))  # and its bookkeeping
     for name, peer in installed().items():
@@ -74,6 +74,17 @@ def race(racers, rounds):
             run()
             seconds[key].append(timed(run, (), calls[key]))
     return {key: statistics.median(found) for key, found in seconds.items()}
+
+
+def keep(name, lines):
+    """Write one line of JSON for each dictionary, numbers to three digits."""
+    text = ",\n".join(json.dumps(line) for line in lines)
+    HERE.joinpath(name).write_text("[\n" + text + "\n]\n")
+
+
+def short(x):
+    """Return a number to three digits."""
+    return float(f"{x:.3g}")
 
 
 SHARES = (0.25, 0.5, 0.75, 0.99)
@@ -146,17 +157,19 @@ def main():
         found = race(contenders(t, W, P, n), rounds)
         ours = found["insert", "whole"]
         ratios = {
-            kind: {name: x / ours for (name, k), x in found.items() if k == kind}
+            kind: {name: short(x / ours) for (name, k), x in found.items() if k == kind}
             for kind in ("whole", "kernel", "peer")
         }
-        told.append(dict(zip(("degree", "points", "knots", "dim", "spread"), case, strict=True), insert=ours, **ratios))
+        told.append(
+            dict(zip(("degree", "points", "knots", "dim", "spread"), case, strict=True), insert=short(ours), **ratios)
+        )
         print(f"\n{title}: insert {readable(1e6 * ours)}; times as long:", flush=True)
         for kind in ("whole", "kernel", "peer"):
             best = sorted((x, name) for name, x in ratios[kind].items() if name != "insert")
             shown = best if kind == "peer" else [*best[:6], *best[-2:]]
             print(f"  {kind:7}" + "  ".join(f"{name} {x:.2f}" for x, name in shown))
     if not options.only:
-        HERE.joinpath("race.json").write_text(json.dumps(told, indent=1) + "\n")
+        keep("race.json", told)
     print(f"\n{time.perf_counter() - start:.0f} s")
 
 
