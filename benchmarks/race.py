@@ -3,9 +3,9 @@
     python benchmarks/race.py [--quick] [--only WORD]     the race; the numbers go to benchmarks/race.json
     python benchmarks/race.py --crossovers                where Boehm's algorithm overtakes the merge, by degree
 
-Curves, arrays in, arrays out, all kernels compiled before the clock runs. "whole" is `insert` with this method: checks and
-bookkeeping (which interval a new knot lies in, which vertices change) included; "kernel" leaves them out, as the counts
-of the text do. Times are of the machine and the moment; the ratios to `insert` as it chooses are what carries over.
+Curves, arrays in, arrays out, all kernels compiled before the clock runs. "whole" is `insert` with this method, checks
+and bookkeeping included (which interval a new knot lies in, which vertices change); "kernel" leaves them out, as the
+counts of the text do. Times are of the machine and the moment; what carries over are ratios to `insert` by itself.
 """
 
 import argparse
