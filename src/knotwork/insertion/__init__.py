@@ -8,9 +8,8 @@ from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
 if TYPE_CHECKING:
     from knotwork.insertion.catalogue import METHODS, Method, count
-    from knotwork.insertion.diagrams import diagram
+    from knotwork.insertion.diagrams import FIGURES, diagram, figure
     from knotwork.insertion.factored import Startup
-    from knotwork.insertion.figures import FIGURES, figure
 
 __all__ = [
     "FIGURES",
@@ -31,13 +30,13 @@ __all__ = [
 
 #: what is loaded when it is first asked for
 _LATER = {
-    "FIGURES": "figures",
+    "FIGURES": "diagrams",
     "METHODS": "catalogue",
     "Method": "catalogue",
     "Startup": "factored",
     "count": "catalogue",
     "diagram": "diagrams",
-    "figure": "figures",
+    "figure": "diagrams",
 }
 
 

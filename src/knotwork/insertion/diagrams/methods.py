@@ -10,7 +10,7 @@ import numpy as np
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.catalogue import METHODS, Method, method_named
 from knotwork.insertion.setting import Setting
-from knotwork.numbers import whole
+from knotwork.numbers import Array, whole
 from knotwork.progressive.diagrams.drawing import Diagram
 from knotwork.progressive.diagrams.layout import Layout, Spot
 from knotwork.progressive.diagrams.picture import picture
@@ -25,14 +25,20 @@ FACTORED: dict[str, Any] = {
     "divide": lambda S, P, Q, a, b, D: (S, P, Q, a, b, DELTA),
 }
 
+UNIT = Expression(1)
 #: the factors of a division, without what it divides by
-DIFFERENCE = Expression(-1), Expression(1)
+DIFFERENCE = -UNIT, UNIT
 
 #: methods that differ from "factored" at equal and at evenly spaced knots alone, which names are not
 _ALIKE = ("factored-multiple", "factored-equal")
 
 #: the methods that make points from points, two at a time
 DRAWN = tuple(name for name, method in METHODS.items() if method.form != "matrix" and name not in _ALIKE)
+
+
+def symbols(written: Iterable[Any]) -> Array:
+    """Return knots as a kernel of insertion takes them."""
+    return np.array([Expression(x) for x in written], object)
 
 
 class Ordered(Expression):

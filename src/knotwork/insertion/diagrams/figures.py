@@ -2,50 +2,36 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Collection, Iterable
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 
 from knotwork.errors import ParameterError
 from knotwork.insertion import factored, forms, oslo, sablonniere
 from knotwork.insertion.catalogue import METHODS
-from knotwork.insertion.diagrams import DIFFERENCE, FACTORED, Scheme, diagram, scheme_of
+from knotwork.insertion.diagrams.duality import differencing, duality
+from knotwork.insertion.diagrams.methods import FACTORED, Scheme, diagram, scheme_of, symbols
+from knotwork.insertion.diagrams.spacing import evenly_spaced
 from knotwork.insertion.goldman import two_triangles
-from knotwork.kernel import Kernel, wrapped
+from knotwork.kernel import Kernel
 from knotwork.numbers import Array
-from knotwork.progressive.diagrams.drawing import LESSER, Diagram, Edge, Node
+from knotwork.progressive.diagrams.drawing import LESSER, Diagram
+from knotwork.progressive.diagrams.figures import Figure
 from knotwork.progressive.diagrams.layout import Spot
 from knotwork.progressive.diagrams.lettering import width
 from knotwork.progressive.diagrams.picture import arguments, picture
-from knotwork.progressive.diagrams.recording import Value, combined, given, recording
-from knotwork.progressive.diagrams.symbols import Expression, Knot, knot, knots, label, names
+from knotwork.progressive.diagrams.recording import Value, given, recording
+from knotwork.progressive.diagrams.symbols import Knot, knots, label, names
 from knotwork.progressive.homogeneous import DELTA
 
 #: points have one coordinate, which is a value
 _ONE = (0,)
-UNIT = Expression(1)
-#: where it does not matter
-_HERE = Spot(0, 0, 0)
 #: all is drawn for cubics, but for Fig. 4.8
 _N = 3
 
 
-@dataclass(frozen=True)
-class Figure:
-    """What a figure shows, and what draws it."""
-
-    caption: str
-    draw: Callable[[], Diagram]
-
-
 # ---- one step of a method -------------------------------------------------------------------------------------------
-
-
-def _symbols(written: Iterable[Any]) -> Array:
-    return np.array([Expression(x) for x in written], object)
 
 
 def vertex(x: list[str]) -> Diagram:
@@ -64,7 +50,7 @@ def _triangle(
     t = base or names("t", 1, 2 * _N)
     P, S = given(knots(t), _N), np.empty((1, 1), object)
     with recording([*t[:_N], *sorted(x), *t[_N:]], **(FACTORED if base else {})) as values:
-        kernel(S[0], P.copy(), _symbols(t[:_N]), _symbols(t[_N:]), _symbols(x), _N, _ONE)
+        kernel(S[0], P.copy(), symbols(t[:_N]), symbols(t[_N:]), symbols(x), _N, _ONE)
     return P, values, S
 
 
@@ -87,7 +73,7 @@ def segment(kernel: Kernel, n: int = _N) -> tuple[Array, list[Value], Array]:
     P, S = given(knots(t), n), np.empty((n + 1, 1), object)
     A, C, stack = np.empty((n + 2, n + 1, 1), object), np.empty((n + 1, 1), object), np.empty((n + 2, 2), np.intp)
     with recording([*t[:n], *u, *t[n:]]) as values:
-        kernel(S, P.copy(), _symbols(t[:n]), _symbols(t[n:]), _symbols(u), n + 1, n, A, C, stack, _ONE)
+        kernel(S, P.copy(), symbols(t[:n]), symbols(t[n:]), symbols(u), n + 1, n, A, C, stack, _ONE)
     return P, values, S
 
 
@@ -97,7 +83,7 @@ def division(n: int = _N) -> Diagram:
     P = given(knots(t), n)
     F = P.copy()
     with recording([*t, DELTA], **FACTORED) as values:
-        forms.division_triangle(F, _symbols(t[:n]), _symbols(t[n:]), n, _ONE)
+        forms.division_triangle(F, symbols(t[:n]), symbols(t[n:]), n, _ONE)
     return _picture(P, values, F)
 
 
@@ -106,7 +92,7 @@ def rounds(s: list[str], shown: int | None = None) -> Diagram:
     count = len(s) - _N
     P, Z = given(knots([*s[:_N], *["δ"] * _N]), _N), np.empty((count + 1, 1), object)
     with recording([*s, DELTA], **FACTORED) as values:
-        factored.rounds(Z, 0, 1, P.copy(), _symbols(s), _N, count, _ONE)
+        factored.rounds(Z, 0, 1, P.copy(), symbols(s), _N, count, _ONE)
     return _picture(P, values[:shown], Z[1:])
 
 
@@ -158,192 +144,6 @@ def overlap() -> Diagram:
     return picture(scheme, names=named, results={divided[spot] for spot in right}, text=text, keep=divided)
 
 
-# ---- evenly spaced knots (Fig. 3.10) --------------------------------------------------------------------------------
-
-
-class Spaced(Expression):
-    """A knot k h, or the spacing h of two, of which the rounds by additions alone take the quotient h / h."""
-
-    __slots__ = ()
-
-    def __sub__(self, other: Any) -> Spaced:
-        return Spaced(super().__sub__(other))
-
-    def __truediv__(self, other: Any) -> Spaced:
-        return Spaced(1) if self == other else NotImplemented
-
-
-@dataclass(frozen=True, eq=False)
-class Multiple(Value):
-    """A value times a factor; sums of them are written down in the list `made`."""
-
-    factor: Expression = UNIT
-    made: list[Value] = field(default_factory=list)
-
-    def __mul__(self, factor: Expression) -> Multiple:
-        return replace(self, parents=(), factors=(), factor=self.factor * factor)
-
-    def __add__(self, other: Multiple) -> Multiple:
-        """c B(…, a) + c h B(…, δ) = c B(…, a + h): which h it is, the factors tell."""
-        h = knot("h")[0]
-        (a,) = set(self.arguments) - set(other.arguments)
-        step = next(k * h for k in range(1, _N + 1) if self.factor * (k * h) == other.factor)
-        kept = [x for x in self.arguments if x != a]
-        at = sum(x[1] == UNIT for x in kept)
-        moved = (*kept[:at], (a[0] + step, UNIT), *kept[at:])
-        self.made.append(replace(self, arguments=moved, parents=(self, other), factors=(UNIT, UNIT)))
-        return self.made[-1]  # type: ignore[return-value]
-
-
-def evenly_spaced() -> Diagram:
-    """Draw rounds with the new knots 0, h, 2h, …: three as ever, then points times factors and by additions alone."""
-    h, delta = Spaced("h"), knot(DELTA)
-    s = np.array([*map(Spaced, names("t", 1, _N)), *(Spaced(k * h) for k in range(2 * _N + 1))], object)
-    order = [*map(knot, s), delta]
-    made: list[Value] = []
-    P, Z = given(knots([*s[:_N], *["δ"] * _N]), _N), np.empty((2 * _N + 2, 1), object)
-    P[:, 0] = [Multiple(value.arguments, made=made) for value in P[:, 0]]
-
-    def noted(kernel: Any) -> Any:
-        def combine(S: Array, P: Array, Q: Array, a: Any, b: Any, u: Any, D: Any) -> None:
-            value = combined(P[0], Q[0], knot(a), delta, knot(u), order)
-            S[0] = Multiple(value.arguments, value.parents, value.factors, made=made)
-            made.append(S[0])
-
-        return combine
-
-    with wrapped(combine=noted):
-        factored.equal_rounds(Z, 0, 1, P.copy(), s, _N, 2 * _N + 1, _ONE)
-
-    def text(value: Value, spot: Spot) -> str:
-        factor = str(value.factor).replace("hhh", "h³").replace("hh", "h²")  # type: ignore[attr-defined]
-        return arguments(value, spot) if factor == "1" else f"{factor} ({arguments(value, spot)})"
-
-    shown = made[: 2 * _N * _N]
-    return picture(Scheme(P[:, 0].tolist(), shown), results={*Z[1:, 0]} & {*shown}, text=text)
-
-
-# ---- evaluation by differences, and its duality with factored knot insertion (Fig. 3.1, 3.6, 3.7) -------------------
-
-
-class Grid:
-    """Values in columns and rows, each joined to those of its parents that stand there when it is put down."""
-
-    def __init__(self) -> None:
-        self.values: dict[tuple[int, int], Value] = {}
-        self.edges: list[tuple[tuple[int, int], tuple[int, int], str]] = []
-        self._latest: dict[Value, tuple[int, int]] = {}
-
-    def put(self, value: Value, column: int, row: int) -> None:
-        """Put down a value, or again, joined to itself."""
-        place, before = (column, row), self._latest.get(value)
-        if before:
-            self.edges.append((before, place, "1"))
-        else:
-            for parent, factor in zip(value.parents, value.factors, strict=True):
-                if parent in self._latest:
-                    self.edges.append((self._latest[parent], place, str(factor)))
-        self.values[place] = value
-        self._latest[value] = place
-
-    def draw(self, text: Callable[[Value], str], results: Collection[Value]) -> Diagram:
-        """Return it as a diagram."""
-        words = max(width(text(value)) for value in self.values.values())
-        step = words + LESSER * max(width(factor) for *_, factor in self.edges) + 4
-        number = {place: k for k, place in enumerate(self.values)}
-        nodes = [
-            Node(step * x, 5.0 * y, text(value), kind="result" if value in results else "made")
-            for (x, y), value in self.values.items()
-        ]
-        return Diagram(tuple(nodes), tuple(Edge(number[a], number[b], factor) for a, b, factor in self.edges))
-
-
-def above(upper: Diagram, lower: Diagram) -> Diagram:
-    """Return two diagrams as one."""
-    drop, count = lower.box.top - upper.box.bottom, len(upper.nodes)
-    nodes = (replace(node, y=node.y - drop) for node in lower.nodes)
-    edges = (replace(edge, start=edge.start + count, end=edge.end + count) for edge in lower.edges)
-    return Diagram((*upper.nodes, *nodes), (*upper.edges, *edges))
-
-
-def bracket(value: Value, spot: Spot = _HERE) -> str:
-    """Return a divided difference as one writes it."""
-    return f"G[{arguments(value, spot)}]"
-
-
-def at_nodes(written: list[str]) -> Value:
-    """Return the divided difference at these nodes as a value that is given."""
-    return Value(tuple(map(knot, written)))
-
-
-def evaluated(c: list[Value], node: str) -> list[Value]:
-    """Return G[s₀], G[s₀ s₁], … from G[s₁], G[s₁ s₂], …: nested multiplication. The last one is constant."""
-    s = knot(node)
-    new = c[-1:]
-    for old in c[-2::-1]:
-        factors = UNIT, s[0] - old.arguments[-1][0]
-        new.insert(0, Value((s, *old.arguments[:-1]), (old, new[0]), factors))
-    return new
-
-
-def advanced(c: list[Value]) -> list[Value]:
-    """Return G[s₃], G[s₂ s₃], … from G[s₄], G[s₃ s₄], …: forward differencing. The last one is constant."""
-    new = []
-    for old, above in itertools.pairwise(c):
-        factors = UNIT, above.arguments[0][0] - old.arguments[-1][0]
-        new.append(Value(above.arguments[:-1], (old, above), factors))
-    return [*new, c[-1]]
-
-
-def differencing() -> Diagram:
-    """Draw the table of divided differences, and evaluation by nested multiplication from its left edge."""
-    levels = [[at_nodes([node]) for node in names("s", 1, _N + 1)]]
-    for _ in range(_N):
-        levels.append(
-            [Value((*P.arguments, Q.arguments[-1]), (P, Q), DIFFERENCE) for P, Q in itertools.pairwise(levels[-1])]
-        )
-    edge = [level[0] for level in levels]
-    table = picture(Scheme(levels[0], itertools.chain(*levels[1:])), text=bracket, results=edge)
-    grid, row, c = Grid(), 0, [Value(value.arguments) for value in edge]
-    for column, value in enumerate(c):
-        grid.put(value, column, row)
-    results = []
-    for node in ("s₀", "s_{−1}"):
-        row += 1
-        c = evaluated(c, node)
-        for column in range(_N, -1, -1):
-            grid.put(c[column], column, row)
-        results.append(c[0])
-    return above(table, grid.draw(bracket, results))
-
-
-def duality(nested: bool) -> Diagram:
-    """Draw one round of step 4 or 4′ and what is dual to it: arrows and signs turned round."""
-    s = ["r₁", "r₂", *names("s", 1, _N + 1)] if nested else [*names("s", 1, _N + 1), *names("r", 1, _N)]
-    P, Z = given(knots([*s[:_N], *["δ"] * _N]), _N), np.empty((_N + 1, 1), object)
-    kernel = factored.nested_rounds if nested else factored.rounds
-    with recording([*s, DELTA], **FACTORED) as values:
-        kernel(Z, 0, 1, P.copy(), _symbols(s), _N, _N, _ONE)
-    new = values[: -_N - 1 : -1] if nested else values[:_N]
-    old = [*(value.parents[0] for value in new), P[_N, 0]]
-    grid = Grid()
-    for column, value in enumerate(old):
-        grid.put(value, column, 0)
-    made = [*new, old[-1]]
-    for column in range(_N, -1, -1) if nested else range(_N + 1):
-        grid.put(made[column], column, 1)
-
-    x = names("s", 1, _N + 1)
-    c = [at_nodes(x[1 : k + 2] if nested else x[_N - k :]) for k in range(_N)] + [at_nodes(x)]
-    differences = evaluated(c, x[0]) if nested else advanced(c)
-    for k in range(_N, -1, -1):
-        grid.put(c[k], _N - k, 4)
-    for k in range(_N, -1, -1) if nested else range(_N + 1):
-        grid.put(differences[k], _N - k, 3)
-    results = {*new, *differences[:-1]}
-    return grid.draw(lambda value: arguments(value, _HERE) if value in {*old, *new} else bracket(value), results)
-
-
 # ---- a tetrahedron by halves (Fig. 4.8) -----------------------------------------------------------------------------
 
 
@@ -361,9 +161,8 @@ def by_halves(n: int = 7) -> Diagram:
         if spot.x == spot.y and spot.y:
             number = _numbers(set(value.arguments) - set(value.parents[0].arguments))
         elif spot.x == spot.y:
-            right = scheme.values[
-                max((s for s in scheme.values if s.panel == spot.panel and not s.y), key=lambda s: s.x)
-            ]
+            last = max(place.x for place in scheme.values if (place.panel, place.y) == (spot.panel, 0))
+            right = scheme.values[Spot(spot.panel, last, 0)]
             number = _numbers(set(value.arguments) & set(right.arguments))
             offset = LESSER * width(number) / 2, -1.1
         nodes.append(replace(node, text=number, offset=offset, x=1.25 * node.x, y=0.4 * node.y))
