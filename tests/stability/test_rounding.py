@@ -9,6 +9,7 @@ import pytest
 import knotwork as kw
 import oracle
 from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.insertion import auto
 from knotwork.stability import condition, extremal, relative_error_bound
 
 UNIT = 2.0**-53
@@ -67,6 +68,23 @@ def test_other_arithmetics(dtype):
         c = (c + 1j * c[::-1]).astype(dtype) if dtype is np.complex128 else c.astype(dtype)
         f = kw.Spline(space, c)
         assert relative_error(f, refined, new) <= relative_error_bound(f, refined)
+
+
+def test_where_boehms_algorithm_is_the_fastest(monkeypatch):
+    """Its combinations build on each other: the bound grows with the number of knots, as the error may."""
+    monkeypatch.setattr(auto, "FEW", 20)
+    monkeypatch.setattr(auto, "CROSSOVERS", {5: ((0.5, 20),)})
+    monkeypatch.setattr(auto, "HIGHEST", 5)
+    rng = np.random.default_rng(3)
+    f = kw.Spline(kw.SplineSpace.clamped(5, 9), rng.standard_normal(9))
+    new = np.sort(rng.random(200))
+    refined = f.space.with_knots(new)
+    assert auto.takes_boehm(f, 0, new)
+    assert kw.insert(f, new) == kw.insert(f, new, method="boehm") != kw.insert(f, new, method="merge")
+    bound = relative_error_bound(f, refined)
+    assert relative_error(f, refined, new) <= bound
+    monkeypatch.setattr(auto, "FEW", 10_000)
+    assert bound / relative_error_bound(f, refined) == pytest.approx(8 * 200 / (10 * 5 + 1), rel=1e-9)
 
 
 def test_points_weights_and_periods():

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from knotwork.insertion.crossovers import CROSSOVERS
 from knotwork.numbers import Array
 from knotwork.space import SplineSpace
+from knotwork.spline import Spline
 
 #: fewer new knots than any crossover has
 FEW = min((least for rows in CROSSOVERS.values() for _, least in rows), default=1)
@@ -12,6 +15,15 @@ FEW = min((least for rows in CROSSOVERS.values() for _, least in rows), default=
 HIGHEST = max(CROSSOVERS, default=0)
 #: for more of them the points cost more than the weights, and of points the merge combines fewer
 COORDINATES = 4
+
+
+def takes_boehm(spline: Spline, axis: int, new: Array) -> bool:
+    """Tell whether Boehm's algorithm is the fastest for several knots.
+
+    Not so for float32, which it would round at every knot.
+    """
+    P, space = spline.coefficients, spline.spaces[axis]
+    return len(new) >= FEW and P.dtype != np.float32 and fastest(space, new, P.size // space.dimension) == "boehm"
 
 
 def fastest(space: SplineSpace, new: Array, coordinates: int) -> str:

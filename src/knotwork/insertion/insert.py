@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from knotwork.banded import Banded
+from knotwork.insertion.auto import takes_boehm
 from knotwork.insertion.refinement import insert_one, matrix_to, missing_knots, refine
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -35,8 +36,8 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> S
 
     Notes
     -----
-    One knot takes Boehm's algorithm (§4.5), several the improved Oslo algorithm as a merge (§4.15). Exact in exact
-    arithmetic.
+    "auto" takes Boehm's algorithm (§4.5) for one knot, and the improved Oslo algorithm as a merge (§4.9) for several;
+    for thousands of knots of high degree, close together, Boehm's again. Exact in exact arithmetic.
 
     Examples
     --------
@@ -55,7 +56,10 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> S
         knots = knots[0]
     if isinstance(knots, float) and not space.periodic and not space.exact:
         return insert_one(spline, knots, axis)
-    return refine(spline, axis, space.new_knots(knots))
+    new = space.new_knots(knots)
+    if takes_boehm(spline, axis, new):
+        return _method("boehm").run(spline, new, axis)
+    return refine(spline, axis, new)
 
 
 def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: str = "auto") -> Banded:
