@@ -16,7 +16,7 @@ from knotwork.insertion.diagrams.spacing import evenly_spaced
 from knotwork.insertion.goldman import two_triangles
 from knotwork.kernel import Kernel
 from knotwork.numbers import Array
-from knotwork.progressive.diagrams.drawing import LESSER, Diagram
+from knotwork.progressive.diagrams.drawing import LESSER, Diagram, Edge, Node
 from knotwork.progressive.diagrams.figures import Figure
 from knotwork.progressive.diagrams.layout import Spot
 from knotwork.progressive.diagrams.lettering import width
@@ -150,23 +150,29 @@ def overlap() -> Diagram:
 def by_halves(n: int = 7) -> Diagram:
     """Draw the rows of the recursive algorithm as dots, with the number of the knot that makes a row at its left.
 
-    Below a row that is drawn again are the knots that it has already.
+    What begins with a row of another panel stands in the second line; below are the knots that the row has already.
     """
     P, values, S = segment(sablonniere.recursive, n)
-    scheme = Scheme(P[:, 0].tolist(), values).without_factors()
-    drawing = picture(scheme, results={*S[:, 0].tolist()}, text=lambda value, spot: "")
-    nodes = []
-    for node, (spot, value) in zip(drawing.nodes, scheme.values.items(), strict=True):
-        number, offset = "", (-1.1, 0.4)
-        if spot.x == spot.y and spot.y:
-            number = _numbers(set(value.arguments) - set(value.parents[0].arguments))
-        elif spot.x == spot.y:
-            last = max(place.x for place in scheme.values if (place.panel, place.y) == (spot.panel, 0))
-            right = scheme.values[Spot(spot.panel, last, 0)]
-            number = _numbers(set(value.arguments) & set(right.arguments))
-            offset = LESSER * width(number) / 2, -1.1
-        nodes.append(replace(node, text=number, offset=offset, x=1.25 * node.x, y=0.4 * node.y))
-    return replace(drawing, nodes=tuple(nodes))
+    scheme, results = Scheme(P[:, 0].tolist(), values), {*S[:, 0].tolist()}
+    right = [0.0, 0.0]
+    nodes: dict[Spot, Node] = {}
+    for panel in range(scheme.panels):
+        spots = [spot for spot in scheme.values if spot.panel == panel]
+        base = [scheme.values[spot] for spot in spots if not spot.y]
+        has = _numbers(set(base[0].arguments) & set(base[-1].arguments))
+        line = int(bool(has))
+        for spot in spots:
+            value = scheme.values[spot]
+            kind = "result" if value in results else "made" if value.parents else "given"
+            text, offset = "", (-1.1, 0.4)
+            if spot.x == spot.y > 0:  # the left edge
+                text = _numbers(set(value.arguments) - set(value.parents[0].arguments))
+            elif not spot.x:
+                text, offset = has, (LESSER * width(has) / 2, -1.1)
+            nodes[spot] = Node(right[line] + 1.1 * spot.x, 2.4 * spot.y - 12 * line, text, kind=kind, offset=offset)
+        right[line] += max(2.2 * len(base), LESSER * width(has)) + 1.5
+    number = {spot: k for k, spot in enumerate(nodes)}
+    return Diagram(tuple(nodes.values()), tuple(Edge(number[a], number[b]) for a, b, _ in scheme.edges))
 
 
 def _numbers(inserted: Collection[Knot]) -> str:
