@@ -196,7 +196,7 @@ def test_plain_and_compiled_agree_on_progressive_curves(both, knots, dtype):
 def test_plain_and_compiled_agree_on_methods_of_insertion(both, dtype):
     """Every method compiles a kernel, which takes about a second, so each has one degree and one number of coordinates.
 
-    Old and new knots repeat; one interval gets more than a group of 3n + 1 knots, some evenly spaced, the next gets one.
+    Old and new knots repeat. One interval gets more than a group of 3n + 1 knots, some evenly spaced, the next one.
     """
     rng = np.random.default_rng(6)
     evenly = (2 + np.arange(8)) / 16

@@ -182,7 +182,7 @@ METHODS: dict[str, Method] = {
         ),
         *_in_three_forms(
             "goldman-modified-improved", "goldman", "§4.9", "the same, where old knots stay as they are",
-            goldman.modified_improved, Setting.by_segments, predictions.boehm, bound=True,
+            goldman.modified_improved, Setting.by_segments, predictions.boehm,
             over_delta=predictions.with_all_right_knots(predictions.boehm),
         ),
         *_in_three_forms(

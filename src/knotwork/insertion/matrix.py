@@ -85,10 +85,9 @@ def morken(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
 
     With a = T_{i+n}, b = T_i: (t_{j+n+1} - b) α_j(i) = (t_{j+n+1} - a) α_j(i-1)
     + (t_{j+n+1} - t_j) / (t_{j+n} - t_{j-1}) [(a - t_{j-1}) α_{j-1}(i-1) - (b - t_{j-1}) α_{j-1}(i)].
-    Rows of old vertices are known; the first row, and one after a row that the domain does not see, is found by itself.
+    Rows of old vertices are known; the first row, and one that the domain does not see, is found by itself.
     """
     zero = one - one
-    known = False
     first, last = U[n], U[len(U) - n - 1]
     for i in range(len(E)):
         q = where[i]
@@ -97,7 +96,7 @@ def morken(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
             E[i, r] = zero
         if old[i] >= 0:
             E[i, old[i] - q + n] = one
-        elif not (known and seen):
+        elif i == 0 or not seen:
             row(E[i], U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, one)
         else:
             a, b, shift = T[i + n], T[i], q - where[i - 1]
@@ -113,7 +112,6 @@ def morken(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
                     ratio = (t - U[j]) / (U[j + n] - e)
                     E[i, r] = E[i, r] + ratio * ((a - e) * corner - (b - e) * beside)
                 E[i, r] = E[i, r] / (t - b)
-        known = seen
 
 
 @kernel
