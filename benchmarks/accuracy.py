@@ -53,12 +53,14 @@ SPACINGS = {f.__name__.replace("_", " "): f for f in (even, random, ratios, clus
 
 
 def problem(rng, n, spacing):
-    """Return the arguments of a `Setting`: clamped old knots, 4 … 40 new ones over all intervals or in one, points."""
+    """Return the arguments of a `Setting`: clamped old knots, up to 40 new ones over all intervals or in one."""
     breaks = np.unique(np.concatenate([[0], np.cumsum(spacing(rng))]))
     t = np.concatenate([[breaks[0]] * n, breaks, [breaks[-1]] * n])
-    m = int(rng.integers(4, 41))
-    lo = rng.integers(0, len(breaks) - 1, 1 if rng.random() < 0.5 else m)  # one interval, or as many in any
-    new = np.sort(breaks[lo] + (breaks[lo + 1] - breaks[lo]) * rng.random(m))
+    new = np.zeros(0)
+    while not len(new):
+        m = int(rng.integers(4, 41))
+        lo = rng.integers(0, len(breaks) - 1, 1 if rng.random() < 0.5 else m)  # one interval, or as many in any
+        new = np.setdiff1d(breaks[lo] + (breaks[lo + 1] - breaks[lo]) * rng.random(m), t)
     return t, new, rng.uniform(-1, 1, (len(t) - n - 1, 1)), n
 
 
@@ -90,7 +92,7 @@ def main():
     """Run, print and write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer problems")
-    problems = 4 if parser.parse_args().quick else 40
+    problems = 4 if parser.parse_args().quick else 100
     kernel.mode = "always"
     start, told = time.perf_counter(), []
     for spacing, n, found in study(problems):

@@ -104,7 +104,7 @@ def errors():
     """Draw worst and typical errors against degree, for even and ill-spaced knots."""
     told = json.loads((MEASURED / "accuracy.json").read_text())
     spacings = list(dict.fromkeys(line["spacing"] for line in told))
-    fig, axes = plt.subplots(1, len(spacings), figsize=(13.5, 4.2), layout="constrained", sharey=True)
+    fig, axes = plt.subplots(1, len(spacings), figsize=(13.5, 4.4), layout="constrained", sharey=True)
     lines = {
         "boehm": (INK, "-"), "boehm-rewritten": (INK, (0, (1, 1.5))), "merge": ("black", (0, (4, 2))),
         "morken": (GREY, "-"), "oslo": (KNOT, "-"), "sablonniere": (GREEN, "-"),
