@@ -118,7 +118,7 @@ def errors():
         ax.axhline(2.0**53, color=GREY, linewidth=0.6)
         plain(ax, title=spacing, xlabel="degree", yscale="log", ylim=(0.3, 1e22))
     axes[0].set_ylabel("error in units of $2^{-53}$")
-    axes[0].annotate("as large as the points", (1, 2.0**53), (0, 3), textcoords="offset points", fontsize=8, color=GREY)
+    axes[1].annotate("as large as the points", (1, 2.0**53), (0, 3), textcoords="offset points", fontsize=8, color=GREY)
     axes[0].legend(frameon=False, handlelength=3, fontsize=8, loc="upper left", bbox_to_anchor=(0, 0.98))
     fig.savefig(IMAGES / "errors.png", dpi=130)
 
