@@ -42,14 +42,38 @@ def in_groups(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def shared(F, a, b, x, p, n, D):  # type: ignore[no-untyped-def]
+    """Put in x_{p+1} … x_n, which all vertices 0 … p of a group have: p + 1 points are left, over a_{n-p+1} …, b."""
+    for r in range(n - p):
+        level(F, F, a[r:], b, n - r, x[p + r], D)
+
+
+@kernel
+def shared_improved(F, a, b, x, p, n, D):  # type: ignore[no-untyped-def]
+    """The same, keeping what is an old knot beside the segment: of the points F[start …] are left. Returns start."""
+    start = 0
+    for r in range(n - p):
+        if kept(x[p + r], b[start]):
+            start += 1
+        else:
+            level(F[start:], F[start:], a[r:], b[start:], n - r, x[p + r], D)
+    return start
+
+
+@kernel
 def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
-    """Vertices of one new segment: x_n … x_1 go in, then x_{n+1} … off the right edge (Fig. 4.7)."""
-    for r in range(n):
-        level(F, F, a[r:], b, n - r, x[n - 1 - r], D)
+    """Vertices of a new segment: x_p … x_1 go in, then x_{n+1} … off the right edge (Fig. 4.7).
+
+    The segment is that between x_p and x_{p+1}, p = k - 1. A whole group has p = n, smaller ones share x_{p+1} … x_n.
+    """
+    p = k - 1
+    shared(F, a, b, x, p, n, D)
+    for r in range(p):
+        level(F, F, a[n - p + r :], b, p - r, x[p - 1 - r], D)
     for s in range(k):
         copy(S[s], F[0], D)
-        if s + 1 < k:
-            level(F, F, x[s:], b, k - 1 - s, x[n + s], D)
+        if s < p:
+            level(F, F, x[s:], b, p - s, x[n + s], D)
 
 
 @kernel
@@ -59,20 +83,21 @@ def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore
     Of a row B(…, a, b) the points that have the innermost knot of a, or of b, among their arguments are simply kept; so
     no combination extrapolates.
     """
-    low = 0
-    for r in range(n):
-        m = n - r
+    p = k - 1
+    start = shared_improved(F, a, b, x, p, n, D)
+    low = n - p
+    for r in range(p):
+        m = p - r
         if x[m - 1] != a[low + m - 1]:
-            level(F, F, a[low:], b, m, x[m - 1], D)
+            level(F[start:], F[start:], a[low:], b[start:], m, x[m - 1], D)
             low += 1
-    start = 0
     for s in range(k):
         copy(S[s], F[start], D)
-        if s + 1 < k:
+        if s < p:
             if kept(x[n + s], b[start]):
                 start += 1
             else:
-                level(F[start:], F[start:], x[s:], b[start:], k - 1 - s, x[n + s], D)
+                level(F[start:], F[start:], x[s:], b[start:], p - s, x[n + s], D)
 
 
 goldman = by_intervals.variant(step=in_groups)

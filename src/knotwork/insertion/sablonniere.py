@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from knotwork.insertion.forms import copy, kept, level
-from knotwork.insertion.goldman import ascending, descending, in_groups
+from knotwork.insertion.goldman import ascending, descending, in_groups, shared, shared_improved
 from knotwork.insertion.steps import by_intervals, by_segments
 from knotwork.kernel import kernel
 
 
 @kernel
 def tetrahedron(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
-    """Vertices 0 … k - 1: up the veer face with x_{n+1}, …, then parallel to the base with x_n, x_{n-1}, … (Fig. 4.3).
+    """Vertices of a new segment: up the veer face with x_{n+1}, …, then parallel to the base with x_p, … (Fig. 4.3).
 
-    Fewer than n + 1 vertices take the lower part of the tetrahedron.
+    The segment is that between x_p and x_{p+1}, p = k - 1. A whole group has p = n, smaller ones share x_{p+1} … x_n.
     """
+    p = k - 1
+    shared(F, a, b, x, p, n, D)
+    low = n - p
     for s in range(k):
-        for j in range(n - s + 1):
+        for j in range(p - s + 1):
             copy(C[j], F[j], D)
-        for r in range(s, n):
-            level(C, C, a[r:], b, n - r, x[n - 1 - (r - s)], D)
+        for r in range(p - s):
+            level(C, C, a[low + s + r :], b, p - s - r, x[p - 1 - r], D)
         copy(S[s], C[0], D)
-        if s + 1 < k:
-            level(F, F, a[s:], b, n - s, x[n + s], D)
+        if s < p:
+            level(F, F, a[low + s :], b, p - s, x[n + s], D)
 
 
 @kernel
@@ -30,9 +33,11 @@ def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[n
 
     The veer face holds the row F[start …] over a[low …], b[start …], parallels to the base begin with a copy of it.
     """
-    start = low = 0
+    p = k - 1
+    start = shared_improved(F, a, b, x, p, n, D)
+    low = n - p
     for s in range(k):
-        m, first = n - s, low
+        m, first = p - s, low
         for j in range(m + 1):
             copy(C[j], F[start + j], D)
         while m > 0:
@@ -42,11 +47,11 @@ def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[n
                 first += 1
             m -= 1
         copy(S[s], C[0], D)
-        if s + 1 < k:
+        if s < p:
             if kept(x[n + s], b[start]):
                 start += 1
             else:
-                level(F[start:], F[start:], a[low:], b[start:], n - s, x[n + s], D)
+                level(F[start:], F[start:], a[low:], b[start:], p - s, x[n + s], D)
             low += 1
 
 
