@@ -383,3 +383,14 @@ def test_a_variant_binds_names_anew(monkeypatch):
     variant = twice.variant(step=down)
     assert variant.plain(3) == 1
     assert variant.digest != twice.digest
+
+
+def test_a_kernel_that_moves_to_another_module_is_another(monkeypatch):
+    """The cache on disk names the module: what was compiled elsewhere would not load."""
+    monkeypatch.setattr(kernels, "KERNELS", [])
+    digests = set()
+    for module in ("here", "there"):
+        names = {"__name__": module}
+        exec("def same(x):\n    return x + 1", names)
+        digests.add(kernels.kernel(names["same"]).digest)
+    assert len(digests) == 2

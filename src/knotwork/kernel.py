@@ -162,7 +162,7 @@ class Kernel:
         """A hash of the source, of all kernels below it and of the constants they use."""
         import hashlib
 
-        hasher = hashlib.sha256(repr(OPTIONS).encode())
+        hasher = hashlib.sha256(repr((OPTIONS, self.source.__module__)).encode())  # Numba's cache names the module
         _hash_code(hasher, self.source.__code__)
         hasher.update(repr(self.source.__defaults__).encode())
         for name in self.source.__code__.co_names:

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from knotwork.insertion.matrix import apply
-from knotwork.kernel import Kernel, extent
+from knotwork.kernel import Kernel, extent, kernel
+from knotwork.knots import merged
 from knotwork.numbers import Array, empty
 
 
@@ -18,6 +19,37 @@ def in_real_coordinates(points: Array) -> Array:
     """Return a copy of points of shape (N, d) where a complex coordinate is two real ones, as all weights are real."""
     copied = np.array(points, order="C")
     return copied.view(copied.real.dtype) if np.iscomplexobj(copied) else copied
+
+
+@kernel
+def count_new(gap, U, W, first, last):  # type: ignore[no-untyped-def]
+    """Add the number of sorted W in [U_q, U_{q+1}) to gap[q], first <= q <= last; those beyond are in the last."""
+    q = first
+    for j in range(len(W)):
+        while q < last and U[q + 1] <= W[j]:
+            q += 1
+        gap[q] += 1
+
+
+@kernel
+def group(first, where, old, interval, T, n, lo, hi):  # type: ignore[no-untyped-def]
+    """Divide the vertices into groups that affect one new segment in [lo, hi]; return their number.
+
+    Group g begins at vertex first[g]; where[g] is the old interval of its segment, -1 if all its vertices are old.
+    """
+    i = g = 0
+    while i < len(old):
+        k = i + n  # the segment [T_k, T_{k+1}) that all vertices of the group affect
+        while k > i and not (k < len(old) and lo <= T[k] < T[k + 1] <= hi):
+            k -= 1
+        where[g] = -1
+        for j in range(i, k + 1):
+            if old[j] < 0:
+                where[g] = interval[k]
+        i = k + 1
+        g += 1
+        first[g] = i
+    return g
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +70,9 @@ class Setting:
     @cached_property
     def gap(self) -> Array:
         """The number of new knots in each interval [U_q, U_{q+1}); those at the end of the domain are in the last."""
-        q = np.clip(np.searchsorted(self.U, self.W, "right") - 1, *self.ends)
-        return np.bincount(q, minlength=len(self.U))
+        gap = np.zeros(len(self.U), np.intp)
+        count_new(gap, self.U, self.W, *self.ends)
+        return gap
 
     @cached_property
     def is_old(self) -> Array:
@@ -52,9 +85,7 @@ class Setting:
     @cached_property
     def T(self) -> Array:
         """The refined knots."""
-        T = np.empty(len(self.is_old), self.U.dtype)
-        T[self.is_old], T[~self.is_old] = self.U, self.W
-        return T
+        return merged(self.U, self.W)
 
     @cached_property
     def old(self) -> Array:
@@ -77,19 +108,10 @@ class Setting:
     @cached_property
     def groups(self) -> tuple[Array, Array]:
         """First vertices of groups of up to n + 1 that affect one new segment, and its interval; -1: all are old."""
-        old, n, T = self.old.tolist(), self.n, self.T.tolist()
-        interval = np.clip(np.searchsorted(self.U, self.T, "right") - 1, *self.ends).tolist()
-        lo, hi = self.U[self.n], self.U[len(self.P)]
-        first, where, i = [0], [], 0
-        while i < len(old):
-            k = i + n  # the segment [T_k, T_{k+1}) that all vertices of the group affect
-            while k > i and not (k < len(old) and lo <= T[k] < T[k + 1] <= hi):
-                k -= 1
-            k = min(max(k, i), len(old) - 1)
-            where.append(interval[k] if min(old[i : k + 1]) < 0 else -1)
-            first.append(k + 1)
-            i = k + 1
-        return np.array(first), np.array(where, np.intp)
+        rows = len(self.old)
+        first, where = np.zeros(rows + 1, np.intp), np.empty(rows, np.intp)
+        count = group(first, where, self.old, self.where, self.T, self.n, self.U[self.n], self.U[len(self.P)])
+        return first[: count + 1], where[:count]
 
     @property
     def intervals(self) -> int:
