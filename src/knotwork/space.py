@@ -329,9 +329,13 @@ class SplineSpace(Frozen):
     def refinement(self, knots: Any) -> tuple[SplineSpace, Array]:
         """Return the space with further knots, and those knots as `new_knots` does."""
         x = self.new_knots(knots)
-        refined = merged(self.knots, x)
+        return self.refined_by(x), x
+
+    def refined_by(self, new: Array) -> SplineSpace:
+        """Return the space with knots in addition that `new_knots` gave; raise if one is repeated too often."""
+        refined = merged(self.knots, new)
         require_multiplicity(refined, self.degree)
-        return SplineSpace.trusted(self.degree, refined, self.periodic), x
+        return SplineSpace.trusted(self.degree, refined, self.periodic)
 
     def new_knots(self, knots: Any) -> Array:
         """Return knots inside the domain sorted, or raise; in a period, the seam counts at its start."""

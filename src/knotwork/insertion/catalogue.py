@@ -58,8 +58,11 @@ class Method:
     def run(self, spline: Spline, knots: Any, axis: int = 0) -> Spline:
         """Return the spline with further knots: as `knotwork.insert`, by this method."""
         axis = spline.axis(axis)
-        space = spline.spaces[axis]
-        refined, new = space.refinement(knots)
+        return self.refine(spline, axis, spline.spaces[axis].new_knots(knots))
+
+    def refine(self, spline: Spline, axis: int, new: Array) -> Spline:
+        """Return the spline with sorted knots inside the domain in addition (trusted)."""
+        refined = spline.spaces[axis].refined_by(new)
         setting, part = _setting(spline, axis, new)
         A, _, B = as_blocks(spline.coefficients, axis).shape
         points = self.points(setting)[part].view(spline.coefficients.dtype)

@@ -58,7 +58,7 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> S
         return insert_one(spline, knots, axis)
     new = space.new_knots(knots)
     if takes_boehm(spline, axis, new):
-        return _method("boehm").run(spline, new, axis)
+        return _method("boehm").refine(spline, axis, new)
     return refine(spline, axis, new)
 
 

@@ -140,16 +140,16 @@ class Setting:
 
     def by_intervals(self, method: Kernel) -> Array:
         """Run a knot-oriented method."""
-        out, A, C, stack, D = self._arrays()
-        K = np.empty(2 * self.n + int(self.gap.max(initial=0)), self.U.dtype)
-        method(out, self.P, self.U, self.T, self.gap, self.n, A, C, stack, K, D)
-        return out
+        return self._by_intervals(method, np.empty(2 * self.n + len(self.W), self.U.dtype))
 
     def by_intervals_with_weights(self, method: Kernel) -> Array:
         """Run a knot-oriented method that keeps the weights of a triangle."""
+        return self._by_intervals(method, np.stack([np.eye(self.n + 1, dtype=int)] * 3) * self.one)
+
+    def _by_intervals(self, method: Kernel, K: Array) -> Array:
         out, A, C, stack, D = self._arrays()
-        K = np.stack([np.eye(self.n + 1, dtype=int)] * 3) * self.one
-        method(out, self.P, self.U, self.T, self.gap, self.n, A, C, stack, K, D)
+        T = np.empty(len(self.U) + len(self.W), self.U.dtype)
+        method(out, T, self.P, self.U, self.W, self.ends[1], self.n, A, C, stack, K, D)
         return out
 
     @cached_property
