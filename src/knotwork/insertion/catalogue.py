@@ -63,7 +63,7 @@ class Method:
     def refine(self, spline: Spline, axis: int, new: Array) -> Spline:
         """Return the spline with sorted knots inside the domain in addition (trusted)."""
         refined = spline.spaces[axis].refined_by(new)
-        setting, part = _setting(spline, axis, new)
+        setting, part = _setting(spline, axis, new, refined.knots)
         A, _, B = as_blocks(spline.coefficients, axis).shape
         points = self.points(setting)[part].view(spline.coefficients.dtype)
         out = np.ascontiguousarray(points.reshape(-1, A, B).transpose(1, 0, 2))
@@ -93,7 +93,7 @@ class Method:
         return self.costs(Size(n, m, r, n + 1 if p is None else p, d, intervals))
 
 
-def _setting(spline: Spline, axis: int, new: Array) -> tuple[Setting, slice]:
+def _setting(spline: Spline, axis: int, new: Array, merged: Array | None = None) -> tuple[Setting, slice]:
     """Return what a method works on to insert sorted knots on one axis, and which of its points are asked for.
 
     A periodic space is unrolled.
@@ -102,7 +102,7 @@ def _setting(spline: Spline, axis: int, new: Array) -> tuple[Setting, slice]:
     n = space.degree
     P = in_real_coordinates(blocks.transpose(1, 0, 2).reshape(blocks.shape[1], -1))
     if not space.periodic:
-        return Setting(space.knots, new, P, n), slice(None)
+        return Setting(space.knots, new, P, n, merged), slice(None)
     U, W, _, first, left = around(space, new)
     N = len(U) - n - 1
     lo, hi = np.searchsorted(W, U[n], "left"), np.searchsorted(W, U[N], "right")
@@ -141,7 +141,11 @@ def _factored(
     name: str, section: str, summary: str, kernel: Kernel, combinations: Formula, costs: Any = None, bound: bool = False
 ) -> Method:
     costs = costs or predictions.factored(combinations)
-    return Method(name, "factored", "factored", section, summary, lambda s: s.by_intervals(kernel), costs, bound)
+
+    def points(s: Setting) -> Array:
+        return s.by_intervals_with_knots(kernel)
+
+    return Method(name, "factored", "factored", section, summary, points, costs, bound)
 
 
 def _matrix(name: str, family: str, section: str, summary: str, points: Any, costs: Any, bound: bool = False) -> Method:

@@ -212,7 +212,7 @@ class Startup:
         self.left, self.right = t[q - n + 1 : q + 1], t[q + 1 : q + n + 1]
         points = spline.coefficients[space.wrapped(q - n - left, n + 1)]
         self.dtype, self.shape = points.dtype, points.shape[1:]
-        self.edge = in_real_coordinates(points.reshape(n + 1, -1))
+        self.edge = in_real_coordinates(points.reshape(n + 1, -1)).copy()
         self.last = self.edge[n:].copy()
         division_triangle(self.edge, self.left, self.right, n, extent(self.edge.shape[1]))
         for array in (self.edge, self.last):

@@ -16,9 +16,9 @@ from knotwork.numbers import Array, empty
 
 
 def in_real_coordinates(points: Array) -> Array:
-    """Return a copy of points of shape (N, d) where a complex coordinate is two real ones, as all weights are real."""
-    copied = np.array(points, order="C")
-    return copied.view(copied.real.dtype) if np.iscomplexobj(copied) else copied
+    """Return points of shape (N, d) where a complex coordinate is two real ones, as all weights are real."""
+    points = np.ascontiguousarray(points)
+    return points.view(points.real.dtype) if np.iscomplexobj(points) else points
 
 
 @kernel
@@ -60,6 +60,7 @@ class Setting:
     W: Array
     P: Array
     n: int
+    merged: Array | None = None
 
     @cached_property
     def ends(self) -> tuple[int, int]:
@@ -84,8 +85,8 @@ class Setting:
 
     @cached_property
     def T(self) -> Array:
-        """The refined knots."""
-        return merged(self.U, self.W)
+        """The refined knots, which may be given as `merged`."""
+        return merged(self.U, self.W) if self.merged is None else self.merged
 
     @cached_property
     def old(self) -> Array:
@@ -140,7 +141,11 @@ class Setting:
 
     def by_intervals(self, method: Kernel) -> Array:
         """Run a knot-oriented method."""
-        return self._by_intervals(method, np.empty(2 * self.n + len(self.W), self.U.dtype))
+        return self._by_intervals(method, np.empty(0, self.U.dtype))
+
+    def by_intervals_with_knots(self, method: Kernel) -> Array:
+        """Run a knot-oriented method that brings the knots of an interval into an order of its own."""
+        return self._by_intervals(method, np.empty(2 * self.n + int(self.gap.max(initial=0)), self.U.dtype))
 
     def by_intervals_with_weights(self, method: Kernel) -> Array:
         """Run a knot-oriented method that keeps the weights of a triangle."""
@@ -148,8 +153,7 @@ class Setting:
 
     def _by_intervals(self, method: Kernel, K: Array) -> Array:
         out, A, C, stack, D = self._arrays()
-        T = np.empty(len(self.U) + len(self.W), self.U.dtype)
-        method(out, T, self.P, self.U, self.W, self.ends[1], self.n, A, C, stack, K, D)
+        method(out, self.T, self.P, self.U, self.W, self.ends[1], self.n, A, C, stack, K, D)
         return out
 
     @cached_property

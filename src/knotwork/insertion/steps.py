@@ -17,18 +17,16 @@ def step(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):  # type: ignore[no-untyped-def]
-    """Insert interval by interval, from the left: out[i … i + n] are the points over the knots T so far, then U.
+    """Insert interval by interval, from the left: out[i … i + n] are the points over T[i + 1 … i + n], then U.
 
     Interval `last` is the last one of the domain that is not empty: it takes the knots at the end.
     """
     for j in range(n + 1):
-        T[j] = U[j]
         copy(out[j], P[j], D)
     i = w = 0
     for q in range(n, len(P)):
         m = 0
         while w < len(W) and (W[w] < U[q + 1] or q == last):
-            T[i + n + 1 + m] = W[w]
             m += 1
             w += 1
         if m > 0:
@@ -37,11 +35,8 @@ def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):  # type: ignore[n
             i += m
             finish(out[i:], T[i + 1 :], U[q + 1 :], P[q], n, D)
         i += 1
-        T[i + n] = U[q + 1]
         if q + 1 < len(P):
             copy(out[i + n], P[q + 1], D)
-    for j in range(len(P) + 1, len(U)):
-        T[i + n + j - len(P)] = U[j]
 
 
 @kernel
