@@ -20,7 +20,7 @@ import knotwork as kw
 from knotwork import insertion, progressive
 from knotwork import kernel as kernels
 from knotwork.conversion.oslo import conversion_matrix, converted
-from knotwork.insertion import factored, forms, steps
+from knotwork.insertion import forms, steps
 from knotwork.kernel import Kernel
 
 SOURCE = Path(kw.__file__).parent.parent
@@ -213,7 +213,7 @@ def test_plain_and_compiled_agree_on_methods_of_insertion(both, dtype):
 
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone
 TEMPLATES = {steps.step, steps.by_intervals, steps.vertex, steps.by_vertices, steps.segment, steps.by_segments,
-             factored.by_vertices_reduced, forms.insert_right_knots}  # fmt: skip
+             forms.insert_right_knots}  # fmt: skip
 
 
 def test_every_kernel_is_tried(both):

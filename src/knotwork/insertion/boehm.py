@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from knotwork.insertion.forms import combine, copy, level
+from knotwork.insertion.forms import combine, copy, copy_points, level
 from knotwork.insertion.steps import by_intervals
 from knotwork.kernel import kernel
 from knotwork.knots import last_at_most
@@ -67,14 +67,12 @@ def one_value_at_a_time(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-un
         r = 1
         while k + r < m and t[n + k + r] == t[n + k]:
             r += 1
-        for j in range(n + 1):
-            copy(F[j], Z[k + j], D)
+        copy_points(F, Z[k:], n + 1, D)
         for i in range(r):
             copy(Z[k + i], F[0], D)
             if i < n:
                 level(F, F, t[k + i :], b, n - i, t[n + k], D)
-        for j in range(n + 1):
-            copy(Z[k + r + j], F[j], D)
+        copy_points(Z[k + r :], F, n + 1, D)
         k += r
 
 

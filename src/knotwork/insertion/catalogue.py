@@ -230,7 +230,7 @@ METHODS: dict[str, Method] = {
         ),
         Method(
             "factored-reduced", "factored", "factored", "§3.6.3", "the same; neighbouring intervals share the start-up",
-            lambda s: s.by_vertices_of_triangles(factored.reduced),
+            lambda s: s.by_vertices(factored.reduced),
             predictions.factored(predictions.oslo, reduced=True),
         ),
         _matrix(

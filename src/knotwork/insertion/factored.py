@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from knotwork.errors import KnotError, ParameterError
-from knotwork.insertion.forms import copy, divide, division_triangle, factored
+from knotwork.insertion.forms import copy, copy_points, divide, division_triangle, factored
 from knotwork.insertion.oslo import triangle
 from knotwork.insertion.setting import in_real_coordinates
-from knotwork.insertion.steps import by_intervals, vertex
+from knotwork.insertion.steps import by_intervals, by_vertices
 from knotwork.kernel import extent, kernel
 from knotwork.knots import some_knots
 from knotwork.numbers import Array, real_numbers, whole
@@ -98,8 +98,7 @@ def forward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
         K[i] = t[i]
     for i in range(n):
         K[n + m + i] = b[i]
-    for j in range(n + 1):
-        copy(A[0, j], Z[j], D)
+    copy_points(A[0], Z, n + 1, D)
     copy(Z[n + m], A[0, n], D)
     division_triangle(A[0], t, b, n, D)
     rounds(Z, 0, 1, A[0], K, n, n + m - 1, D)
@@ -123,8 +122,7 @@ def backward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 @kernel
 def both_ways(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
     """Part forward, part backward, from the two edges of one division triangle (§3.6.1)."""
-    for j in range(n + 1):
-        copy(A[0, j], Z[j], D)
+    copy_points(A[0], Z, n + 1, D)
     copy(A[1, 0], A[0, n], D)
     copy(Z[n + m], A[0, n], D)
     for j in range(1, n + 1):
@@ -146,31 +144,22 @@ def both_ways(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def by_vertices_reduced(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untyped-def]
-    """The Oslo variant (Fig. 3.8); the division triangle of the next interval has one new side (Fig. 3.9).
+def load_neighbour(F, G, P, U, q, before, n, D):  # type: ignore[no-untyped-def]
+    """F = the left side of the division triangle G of interval q, one side new if q follows `before` (Fig. 3.9).
 
-    D_i^j = (D_i^{j-1} - D_{i-1}^{j-1}) / (t_{i+n-j+1} - t_i) does not depend on the interval: F[i - q + n, j] holds it.
+    D_i^j = (D_i^{j-1} - D_{i-1}^{j-1}) / (t_{i+n-j+1} - t_i) does not depend on the interval: G[i - q + n, j] holds it.
     """
-    q = -1
-    for i in range(len(out)):
-        if old[i] >= 0:
-            copy(out[i], P[old[i]], D)
-        else:
-            if where[i] != q:
-                kept = 0
-                if where[i] == q + 1 and q >= 0:
-                    kept = n
-                    for k in range(n):
-                        for j in range(k + 1):
-                            copy(F[k, j], F[k + 1, j], D)
-                q = where[i]
-                for k in range(kept, n + 1):
-                    copy(F[k, 0], P[q - n + k], D)
-                    for j in range(1, k + 1):
-                        divide(F[k, j], F[k - 1, j - 1], F[k, j - 1], U[q - n + k], U[q + k - j + 1], D)
-            for j in range(n + 1):
-                copy(R[j], F[j, j], D)
-            vertex(out[i], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, D)
+    kept = 0
+    if before >= 0 and q == before + 1:
+        kept = n
+        for k in range(n):
+            copy_points(G[k], G[k + 1], k + 1, D)
+    for k in range(kept, n + 1):
+        copy(G[k, 0], P[q - n + k], D)
+        for j in range(1, k + 1):
+            divide(G[k, j], G[k - 1, j - 1], G[k, j - 1], U[q - n + k], U[q + k - j + 1], D)
+    for j in range(n + 1):
+        copy(F[j], G[j, j], D)
 
 
 step_4 = by_intervals.variant(step=forward)
@@ -179,7 +168,7 @@ backwards = by_intervals.variant(step=backward)
 split = by_intervals.variant(step=both_ways)
 multiple = by_intervals.variant(step=forward.variant(combine=skip_equal))
 equal = by_intervals.variant(step=forward.variant(rounds=equal_rounds))
-reduced = by_vertices_reduced.variant(vertex=triangle.variant(combine=factored))
+reduced = by_vertices.variant(load=load_neighbour, vertex=triangle.variant(combine=factored))
 
 
 class Startup:

@@ -45,6 +45,13 @@ def copy(S, P, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def copy_points(S, R, m, D):  # type: ignore[no-untyped-def]
+    """S[j] = R[j] for j < m."""
+    for j in range(m):
+        copy(S[j], R[j], D)
+
+
+@kernel
 def level(S, R, a, b, m, u, D):  # type: ignore[no-untyped-def]
     """One level: S[j] combines R[j] and R[j + 1], where the knots a[j] and b[j] give way to u. S may be R."""
     for j in range(m):

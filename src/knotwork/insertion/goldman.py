@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from knotwork.insertion.forms import copy, kept, level
+from knotwork.insertion.forms import copy, copy_points, kept, level
 from knotwork.insertion.steps import by_intervals, by_segments
 from knotwork.kernel import kernel
 
@@ -13,8 +13,7 @@ def ascending(Z, F, t, b, x, n, levels, D):  # type: ignore[no-untyped-def]
     for r in range(levels):
         copy(Z[r], F[0], D)
         level(F, F, t[r:], b, n - r, x[r], D)
-    for j in range(n - levels + 1):
-        copy(Z[levels + j], F[j], D)
+    copy_points(Z[levels:], F, n - levels + 1, D)
 
 
 @kernel
@@ -30,14 +29,11 @@ def in_groups(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
     k = 0
     while k < m:
         g = min(n + 1, m - k)
-        for j in range(n + 1):
-            copy(A[0, j], Z[k + j], D)
-        for j in range(g):
-            copy(C[j], Z[k + n - g + 1 + j], D)
+        copy_points(A[0], Z[k:], n + 1, D)
+        copy_points(C, Z[k + n - g + 1 :], g, D)
         ascending(Z[k:], A[0], t[k:], b, t[k + n :], n, min(g, n), D)
         descending(C, t[k:], b, n, t[k + n :], g, D)
-        for j in range(g):
-            copy(Z[k + n + 1 + j], C[j], D)
+        copy_points(Z[k + n + 1 :], C, g, D)
         k += g
 
 

@@ -12,7 +12,14 @@ All holds in any arithmetic. (4.4) to (4.6) come from the linearity of the bloss
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
+
+import numpy as np
+
+from knotwork.errors import KnotError
+from knotwork.insertion.matrix import row
+from knotwork.numbers import numbers
 
 
 def discrete_bsplines(t: Sequence[Any], q: int, args: Sequence[Any]) -> list[Any]:
@@ -34,15 +41,13 @@ def discrete_bsplines(t: Sequence[Any], q: int, args: Sequence[Any]) -> list[Any
     >>> discrete_bsplines([0, 0, 0, 1, 1, 1], 2, [0.25, 0.5])
     [0.375, 0.5, 0.125]
     """
-    row: list[Any] = [1]
-    for k, x in enumerate(args, 1):
-        above = [0, *row, 0]  # α_{q-k,k-1} … α_{q+1,k-1}
-        row = [
-            (0 if j == q - k else (x - t[j]) / (t[j + k] - t[j]) * above[j - q + k])
-            + (0 if j == q else (t[j + k + 1] - x) / (t[j + k + 1] - t[j + 1]) * above[j - q + k + 1])
-            for j in range(q - k, q + 1)
-        ]
-    return row
+    n = len(args)
+    values = numbers([*t[q - n + 1 : q + n + 1], *args], "knots and arguments", KnotError)
+    one = Fraction(1) if values.dtype == object else values.dtype.type(1)
+    E = np.empty(n + 1, values.dtype)
+    row(E, values[:n], values[n : 2 * n], values[2 * n :], n, one)
+    alphas: list[Any] = E.tolist()
+    return alphas
 
 
 def lower_degree(t: Sequence[Any], j: int, n: int, b: Any, a: Any, above: Any, here: Any) -> Any:

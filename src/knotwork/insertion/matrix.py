@@ -5,7 +5,7 @@ Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q; q is 
 
 from __future__ import annotations
 
-from knotwork.insertion.forms import combine, copy
+from knotwork.insertion.forms import combine, copy, copy_points
 from knotwork.insertion.steps import by_intervals
 from knotwork.kernel import kernel
 
@@ -189,8 +189,7 @@ def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-u
     while k < m:
         g = min(n + 1, m - k)
         top, rest = min(g, n), n - g + 1
-        for j in range(n + 1):
-            copy(F[j], Z[k + j], D)
+        copy_points(F, Z[k:], n + 1, D)
         weights(G, t[k:], b, t[k + n :], 1, n, top)
         set_to(X, K[2], n + 1)
         for r in range(top):
@@ -215,8 +214,7 @@ def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-unty
     while k < m:
         g = min(n + 1, m - k)
         top, rest = min(g, n), n - g + 1
-        for j in range(n + 1):
-            copy(F[j], Z[k + j], D)
+        copy_points(F, Z[k:], n + 1, D)
         weights(G, t[k:], b, t[k + n :], 1, n, top)
         for i in range(n + 1):
             height, j = min(i, top), max(i - top, 0)

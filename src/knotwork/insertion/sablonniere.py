@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from knotwork.insertion.forms import copy, kept, level
+from knotwork.insertion.forms import copy, copy_points, kept, level
 from knotwork.insertion.goldman import ascending, descending, in_groups, shared, shared_improved
 from knotwork.insertion.steps import by_intervals, by_segments
 from knotwork.kernel import kernel
@@ -18,8 +18,7 @@ def tetrahedron(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped
     shared(F, a, b, x, p, n, D)
     low = n - p
     for s in range(k):
-        for j in range(p - s + 1):
-            copy(C[j], F[j], D)
+        copy_points(C, F, p - s + 1, D)
         for r in range(p - s):
             level(C, C, a[low + s + r :], b, p - s - r, x[p - 1 - r], D)
         copy(S[s], C[0], D)
@@ -38,8 +37,7 @@ def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[n
     low = n - p
     for s in range(k):
         m, first = p - s, low
-        for j in range(m + 1):
-            copy(C[j], F[start + j], D)
+        copy_points(C, F[start:], m + 1, D)
         while m > 0:
             u = x[s + m - 1]
             if u != a[first + m - 1]:
@@ -73,8 +71,7 @@ def halves(S, R, a, b, x, i, j, n, stack, D):  # type: ignore[no-untyped-def]
             top -= 1
         else:
             mid, m = (lo + hi) // 2, hi - lo
-            for q in range(m + 1):
-                copy(R[top + 1, q], R[top, q], D)
+            copy_points(R[top + 1], R[top], m + 1, D)
             for r in range(mid - lo + 1):
                 level(R[top], R[top], a[n - m + r :], b, m - r, x[n + lo + r], D)
             for r in range(hi - mid):
@@ -87,8 +84,7 @@ def halves(S, R, a, b, x, i, j, n, stack, D):  # type: ignore[no-untyped-def]
 @kernel
 def recursive(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
     """Vertices 0 … k - 1 by halves of halves."""
-    for j in range(n + 1):
-        copy(A[0, j], F[j], D)
+    copy_points(A[0], F, n + 1, D)
     halves(S, A, a, b, x, 0, k - 1, n, stack, D)
 
 
@@ -101,8 +97,7 @@ def inner(Z, A, t, b, x, lo, hi, e, n, C, stack, D):  # type: ignore[no-untyped-
     lone = lo - 1 if e > 0 else hi + 1
     for k in range(1, hi - lo + 2):
         level(A[0], A[0], t[k - 1 :], b, n - k + 1, x[lone + n + k - 1] if e > 0 else x[lone - k], D)
-        for j in range(n - k + 1):
-            copy(C[j], A[0, j], D)
+        copy_points(C, A[0], n - k + 1, D)
         for r in range(n - k):
             level(C, C, t[k + r :], b, n - k - r, x[lone + n - 1 - r] if e > 0 else x[lone + r], D)
         copy(Z[lone + e * k], C[0], D)
@@ -131,18 +126,15 @@ def two_tetrahedra(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped
             x, count = t[k + n :], g - n + 1
             half = (count + 1) // 2
             spare = len(A) - 1
-            for j in range(n + 1):
-                copy(A[spare, j], Z[k + j], D)
-                copy(A[0, j], Z[k + j], D)
-                copy(C[j], Z[k + j], D)
+            copy_points(A[spare], Z[k:], n + 1, D)
+            copy_points(A[0], A[spare], n + 1, D)
+            copy_points(C, A[spare], n + 1, D)
             ascending(Z[k:], A[0], t[k:], b, x, n, n, D)
             descending(C, t[k:], b, n, x[g - n - 1 :], n + 1, D)
-            for j in range(n + 1):
-                copy(Z[k + g + j], C[j], D)
-                copy(A[0, j], A[spare, j], D)
+            copy_points(Z[k + g :], C, n + 1, D)
+            copy_points(A[0], A[spare], n + 1, D)
             inner(Z[k + n :], A, t[k:], b, x, 1, half - 1, 1, n, C, stack, D)
-            for j in range(n + 1):
-                copy(A[0, j], A[spare, j], D)
+            copy_points(A[0], A[spare], n + 1, D)
             inner(Z[k + n :], A, t[k:], b, x, half, count - 2, -1, n, C, stack, D)
         k += g
 

@@ -186,14 +186,8 @@ class Setting:
     def by_vertices(self, method: Kernel) -> Array:
         """Run a vertex-oriented method."""
         out, A, C, _, D = self._arrays()
-        method(out, self.P, self.U, self.T, self.old, self.where, self.n, A[0], C, D)
-        return out
-
-    def by_vertices_of_triangles(self, method: Kernel) -> Array:
-        """Run a vertex-oriented method that keeps the whole division triangle of an interval."""
-        out, _, C, _, D = self._arrays()
-        F = np.empty((self.n + 1, *C.shape), C.dtype)
-        method(out, self.P, self.U, self.T, self.old, self.where, self.n, F, C, D)
+        G = np.empty((self.n + 1, *C.shape), C.dtype)
+        method(out, self.P, self.U, self.T, self.old, self.where, self.n, A[0], C, G, D)
         return out
 
     def by_segments(self, method: Kernel) -> Array:

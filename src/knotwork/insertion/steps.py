@@ -6,7 +6,7 @@ finds one new vertex from old ones; a segment-oriented one up to n + 1 vertices 
 
 from __future__ import annotations
 
-from knotwork.insertion.forms import copy, finish, frame
+from knotwork.insertion.forms import copy, copy_points, finish, frame
 from knotwork.kernel import kernel
 
 
@@ -21,8 +21,7 @@ def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):  # type: ignore[n
 
     Interval `last` is the last one of the domain that is not empty: it takes the knots at the end.
     """
-    for j in range(n + 1):
-        copy(out[j], P[j], D)
+    copy_points(out, P, n + 1, D)
     i = w = 0
     for q in range(n, len(P)):
         m = 0
@@ -40,10 +39,9 @@ def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):  # type: ignore[n
 
 
 @kernel
-def load(F, P, U, q, n, D):  # type: ignore[no-untyped-def]
-    """F = the n + 1 points of interval q, over the knots of the form."""
-    for j in range(n + 1):
-        copy(F[j], P[q - n + j], D)
+def load(F, G, P, U, q, before, n, D):  # type: ignore[no-untyped-def]
+    """F = the n + 1 points of interval q, over the knots of the form; those of `before` were last. G is scratch."""
+    copy_points(F, P[q - n :], n + 1, D)
     frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
 
 
@@ -53,7 +51,7 @@ def vertex(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def by_vertices(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untyped-def]
+def by_vertices(out, P, U, T, old, where, n, F, R, G, D):  # type: ignore[no-untyped-def]
     """Find each new vertex from the old ones of interval where[i], unless it is the old vertex old[i] >= 0."""
     q = -1
     for i in range(len(out)):
@@ -61,10 +59,9 @@ def by_vertices(out, P, U, T, old, where, n, F, R, D):  # type: ignore[no-untype
             copy(out[i], P[old[i]], D)
         else:
             if where[i] != q:
+                load(F, G, P, U, where[i], q, n, D)
                 q = where[i]
-                load(F, P, U, q, n, D)
-            for j in range(n + 1):
-                copy(R[j], F[j], D)
+            copy_points(R, F, n + 1, D)
             vertex(out[i], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], n, D)
 
 
@@ -84,8 +81,7 @@ def by_segments(out, P, U, T, old, first, where, n, F, R, A, C, stack, D):  # ty
                 copy(out[s], P[old[s]], D)
         else:
             if where[g] != q:
+                load(F, A, P, U, where[g], q, n, D)
                 q = where[g]
-                load(F, P, U, q, n, D)
-            for j in range(n + 1):
-                copy(R[j], F[j], D)
+            copy_points(R, F, n + 1, D)
             segment(out[i:], R, U[q - n + 1 :], U[q + 1 :], T[i + 1 :], k, n, A, C, stack, D)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import numpy as np
 
-from knotwork.errors import ParameterError
 from knotwork.insertion import factored, forms, oslo, sablonniere
 from knotwork.insertion.catalogue import METHODS
 from knotwork.insertion.diagrams.duality import differencing, duality
@@ -17,7 +15,7 @@ from knotwork.insertion.goldman import two_triangles
 from knotwork.kernel import Kernel
 from knotwork.numbers import Array
 from knotwork.progressive.diagrams.drawing import LESSER, Diagram, Edge, Node
-from knotwork.progressive.diagrams.figures import Figure
+from knotwork.progressive.diagrams.figures import Figure, numbered
 from knotwork.progressive.diagrams.layout import Spot
 from knotwork.progressive.diagrams.lettering import width
 from knotwork.progressive.diagrams.picture import arguments, picture
@@ -259,7 +257,4 @@ def figure(number: str) -> Diagram:
     >>> [edge.label for edge in figure("4.12").edges]
     ['1', 's₄ − s₁', '1', 's₄ − s₂', '1', 's₄ − s₃']
     """
-    if number not in FIGURES:
-        raise ParameterError(f"figure {number!r} given; expected one of {', '.join(FIGURES)}")
-    drawn = FIGURES[number]
-    return replace(drawn.draw(), title=f"Fig. {number}. {drawn.caption}")
+    return numbered(FIGURES, number)

@@ -30,6 +30,14 @@ class Figure:
     draw: Callable[[], Diagram]
 
 
+def numbered(figures: dict[str, Figure], number: str) -> Diagram:
+    """Return the figure of this number under its caption, or raise."""
+    if number not in figures:
+        raise ParameterError(f"figure {number!r} given; expected one of {', '.join(figures)}")
+    figure = figures[number]
+    return replace(figure.draw(), title=f"Fig. {number}. {figure.caption}")
+
+
 def construction(t: list[Any], points: Any, a: Any, value: float) -> Diagram:
     """Draw a curve of degree n over knots t, its control polygon and the de Boor algorithm at a, which is this value.
 
@@ -205,7 +213,4 @@ def figure(number: str) -> Diagram:
     >>> {edge.label for edge in figure("2.16").edges}
     {'1'}
     """
-    if number not in FIGURES:
-        raise ParameterError(f"figure {number!r} given; expected one of {', '.join(FIGURES)}")
-    drawn = FIGURES[number]
-    return replace(drawn.draw(), title=f"Fig. {number}. {drawn.caption}")
+    return numbered(FIGURES, number)
