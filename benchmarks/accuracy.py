@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 
 import knotwork as kw
-from knotwork import kernel
+from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.setting import Setting
 from race import keep, short

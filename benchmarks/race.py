@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import knotwork as kw
-from knotwork import kernel
+from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.merge import refined
 from knotwork.insertion.refinement import refine

@@ -16,7 +16,7 @@ import time
 import numpy as np
 
 import knotwork as kw
-from knotwork import kernel
+from knotwork.arithmetic import kernel
 from peers import Pantr, installed
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import functools
 import importlib
@@ -18,10 +19,10 @@ import pytest
 
 import knotwork as kw
 from knotwork import insertion, progressive
-from knotwork import kernel as kernels
+from knotwork.arithmetic import kernel as kernels
+from knotwork.arithmetic.kernel import Kernel
 from knotwork.conversion.oslo import conversion_matrix, converted
 from knotwork.insertion import forms, steps
-from knotwork.kernel import Kernel
 
 SOURCE = Path(kw.__file__).parent.parent
 
@@ -305,7 +306,7 @@ def test_overflow_is_as_silent_plain_as_compiled():
 # ---- the cache ----------------------------------------------------------------------------------------------------
 
 ABOVE = """
-    from knotwork.kernel import kernel
+    from knotwork.arithmetic.kernel import kernel
     from edited.below import term
     FACTOR = {factor}
 
@@ -317,7 +318,7 @@ ABOVE = """
         return s
 """
 BELOW = """
-    from knotwork.kernel import kernel
+    from knotwork.arithmetic.kernel import kernel
 
     @kernel
     def term(x):
@@ -394,3 +395,14 @@ def test_a_kernel_that_moves_to_another_module_is_another(monkeypatch):
         exec("def same(x):\n    return x + 1", names)
         digests.add(kernels.kernel(names["same"]).digest)
     assert len(digests) == 2
+
+
+def test_only_kernels_go_without_types():
+    untyped = []
+    for path in sorted((SOURCE / "knotwork").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.returns is None:
+                marks = {ast.unparse(mark).partition("(")[0] for mark in node.decorator_list}
+                if "kernel" not in marks and node.name not in ("__init__", "__init_subclass__"):
+                    untyped.append(f"{path.name}:{node.lineno} {node.name}")
+    assert untyped == []

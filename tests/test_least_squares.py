@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import knotwork as kw
 import strategies as kinds
-from knotwork.banded import Banded
-from knotwork.least_squares import least_squares
+from knotwork.linear.banded import Banded
+from knotwork.linear.least_squares import least_squares
 
 
 def solved(A, b):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import knotwork as kw
-from knotwork import parallel
+from knotwork.arithmetic import parallel
 from knotwork.errors import KnotError
 
 RNG = np.random.default_rng(0)

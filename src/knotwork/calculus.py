@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import Banded, along, as_blocks
+from knotwork.arithmetic.arrays import Array, require_finite
+from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import PointError
 from knotwork.evaluation import Basis
-from knotwork.kernel import extent, kernel
-from knotwork.numbers import Array, require_finite
+from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 
 
 @kernel
-def differences(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
+def differences(t, P, n, first, out, D):
     """out_i = n (P_{i+1} − P_i) / (t_{i+n+1} − t_{i+1}): the two-term derivative formula (§2.3.3)."""
     for a in range(len(P)):
         for i in range(out.shape[1]):
@@ -25,7 +25,7 @@ def differences(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def running_sums(t, P, n, first, out, D):  # type: ignore[no-untyped-def]
+def running_sums(t, P, n, first, out, D):
     """out_{i+1} = out_i + P_i (t_{i+n+1} − t_i) / (n + 1), from out_0 = 0: the integral of degree n + 1 (§2.3.5)."""
     for a in range(len(P)):
         for c in range(len(D)):

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import Banded, apply_rows
+from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, real_numbers, require_finite
+from knotwork.arithmetic.kernel import extent, kernel
+from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import ParameterError
-from knotwork.kernel import extent, kernel
 from knotwork.knots import last_at_most
-from knotwork.numbers import Array, empty, in_arithmetic_of, real_numbers, require_finite
-from knotwork.parallel import in_parts
+from knotwork.linear.banded import Banded, apply_rows
 from knotwork.space import SplineSpace
 
 #: parameters evaluated at a time, so that their basis functions stay in the cache
@@ -23,13 +23,13 @@ WALK = 8
 
 
 @kernel
-def cell(x, a, b, cells):  # type: ignore[no-untyped-def]
+def cell(x, a, b, cells):
     """Return which of `cells` equal parts of [a, b] holds x; monotone in x, so it brackets intervals safely."""
     return max(0, min(int((x - a) / (b - a) * cells), cells - 1))
 
 
 @kernel
-def cell_table(t, first, last, table):  # type: ignore[no-untyped-def]
+def cell_table(t, first, last, table):
     """table[c] = the last q in [first, last] with t[q] in a cell before c (or q = first)."""
     cells = len(table) - 1
     c = 0
@@ -44,7 +44,7 @@ def cell_table(t, first, last, table):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def locate(t, table, walk, first, last, u, span):  # type: ignore[no-untyped-def]
+def locate(t, table, walk, first, last, u, span):
     """span[i] = the last q in [first, last] with t[q] <= u[i]: [t_q, t_{q+1}) holds u, or the last holds b."""
     cells = len(table) - 1
     lo = first
@@ -65,7 +65,7 @@ def locate(t, table, walk, first, last, u, span):  # type: ignore[no-untyped-def
 
 
 @kernel
-def basis(t, K, R, span, u, E):  # type: ignore[no-untyped-def]
+def basis(t, K, R, span, u, E):
     """E[r, i, j] = r-th derivative at u[i] of basis function span[i]-n+j (Cox, de Boor, Mansfield).
 
     K and R are as long as the degree and the number of orders. The triangle is that of §2.2 read top-down: its level
@@ -103,7 +103,7 @@ def basis(t, K, R, span, u, E):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def contract(base, offset, w, P, out, D):  # type: ignore[no-untyped-def]
+def contract(base, offset, w, P, out, D):
     """out[i] = Σ_l w[i, l] · P[base[i] + offset[l]]: one point of a tensor product a row."""
     for i in range(len(base)):
         for c in range(len(D)):

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, real_array, require_finite
+from knotwork.arithmetic.kernel import kernel
+from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import KnotError
-from knotwork.kernel import kernel
-from knotwork.numbers import Array, empty, in_arithmetic_of, real_array, require_finite
-from knotwork.parallel import in_parts
 
 
 def sorted_knots(knots: Any, what: str = "knots") -> Array:
@@ -73,7 +73,7 @@ def require_multiplicity(knots: Array, degree: int) -> None:
 
 
 @kernel
-def last_at_most(t, lo, hi, x):  # type: ignore[no-untyped-def]
+def last_at_most(t, lo, hi, x):
     """Return the last q in [lo, hi] with t[q] <= x; lo if there is none."""
     while lo < hi:
         q = (lo + hi + 1) // 2
@@ -85,13 +85,13 @@ def last_at_most(t, lo, hi, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def old_is_next(U, j, W, k, stop):  # type: ignore[no-untyped-def]
+def old_is_next(U, j, W, k, stop):
     """Tell whether U[j] precedes W[k] in the merge: of equals old first, but what is left of W before U[stop]."""
     return k >= len(W) or (j < stop and U[j] <= W[k])
 
 
 @kernel
-def next_knot(U, j, W, k, stop):  # type: ignore[no-untyped-def]
+def next_knot(U, j, W, k, stop):
     """Return the knot that follows j of U and k of W in their merge, and how many of each are then merged."""
     if old_is_next(U, j, W, k, stop):
         return U[j], j + 1, k
@@ -99,7 +99,7 @@ def next_knot(U, j, W, k, stop):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
+def old_among(U, W, stop, count):
     """Return how many of the first `count` merged knots are old; in the order of `old_is_next`."""
     lo, hi = max(0, count - len(W)), min(count, len(U))
     while lo < hi:
@@ -112,7 +112,7 @@ def old_among(U, W, stop, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def merge(U, W, T, lo):  # type: ignore[no-untyped-def]
+def merge(U, W, T, lo):
     """T = the sorted U and W merged, from place `lo` on."""
     j = old_among(U, W, len(U), lo)
     k = lo - j

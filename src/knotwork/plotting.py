@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, whole
 from knotwork.errors import MissingExtraError, ParameterError, PointError
 from knotwork.knots import multiplicities
-from knotwork.numbers import Array, whole
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

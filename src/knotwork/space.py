@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import FrozenInstanceError
 from typing import Any, Self
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, exact, require_room, whole
 from knotwork.errors import KnotError, ParameterError
 from knotwork.knots import (
     combine,
@@ -22,21 +22,9 @@ from knotwork.knots import (
     sorted_knots,
     turned,
 )
-from knotwork.numbers import Array, exact, require_room, whole
+from knotwork.value import Frozen
 
 _set = object.__setattr__
-
-
-class Frozen:
-    """A value: its attributes are set once, when it is made."""
-
-    __slots__ = ()
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        raise FrozenInstanceError(f"cannot assign to {name!r}: a {type(self).__name__} is a value")
-
-    def __delattr__(self, name: str) -> None:
-        raise FrozenInstanceError(f"cannot delete {name!r}: a {type(self).__name__} is a value")
 
 
 class SplineSpace(Frozen):

@@ -7,11 +7,12 @@ from typing import Any, Self
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, numbers, require_finite, whole
 from knotwork.calculus import antiderivative, derivative
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import on_grid, parameters, quotient_rule, scattered
-from knotwork.numbers import Array, exact, in_arithmetic_of, numbers, require_finite, whole
-from knotwork.space import Frozen, SplineSpace, require_degree
+from knotwork.space import SplineSpace, require_degree
+from knotwork.value import Frozen
 
 _set = object.__setattr__
 

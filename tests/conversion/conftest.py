@@ -2,7 +2,7 @@
 
 import pytest
 
-from knotwork import kernel
+from knotwork.arithmetic import kernel
 
 
 @pytest.fixture(autouse=True)

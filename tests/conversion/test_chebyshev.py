@@ -11,8 +11,8 @@ from scipy.optimize import linprog
 
 import knotwork as kw
 from knotwork.conversion.chebyshev import chebyshev
-from knotwork.elimination import solve
 from knotwork.errors import KnotError
+from knotwork.linear.elimination import solve
 
 
 @st.composite

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from knotwork import kernel
+from knotwork.arithmetic import kernel
 
 #: what runs as it does for users
 COMPILED = {"test_insert", "test_pieces"}

@@ -14,9 +14,9 @@ import pytest
 
 import knotwork as kw
 import oracle
+from knotwork.diagrams.insertion import DRAWN
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion import FIGURES, METHODS, count, diagram, figure
-from knotwork.insertion.diagrams import DRAWN
 
 IMAGES = Path(__file__).parents[2] / "docs" / "images" / "insertion"
 NAME = r"[a-z](?:[₀-₉]+|_\{[^}]*\})?"

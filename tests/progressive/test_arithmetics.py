@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from knotwork import kernel
+from knotwork.arithmetic import kernel
 from knotwork.progressive import (
     DELTA,
     METHODS,

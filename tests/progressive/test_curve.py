@@ -9,8 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from knotwork import kernel
-from knotwork.arithmetic import counting
+from knotwork.arithmetic import counting, kernel
 from knotwork.errors import KnotError
 from knotwork.progressive import DELTA, Curve, Sequence, bernstein, insert, monomial, power
 from progressive import polynomials

@@ -14,14 +14,14 @@ import pytest
 
 import oracle
 from knotwork.arithmetic.counting import Counting, counting
+from knotwork.diagrams.drawing import Box
+from knotwork.diagrams.layout import Layout
+from knotwork.diagrams.lettering import parts, width
+from knotwork.diagrams.progressive import SCHEMES
+from knotwork.diagrams.recording import combined, given
+from knotwork.diagrams.symbols import Expression, knot, knots
 from knotwork.errors import KnotError, ParameterError
 from knotwork.progressive import DELTA, FIGURES, METHODS, Curve, change_basis, diagram, figure
-from knotwork.progressive.diagrams.drawing import Box
-from knotwork.progressive.diagrams.layout import Layout
-from knotwork.progressive.diagrams.lettering import parts, width
-from knotwork.progressive.diagrams.recording import combined, given
-from knotwork.progressive.diagrams.schemes import SCHEMES
-from knotwork.progressive.diagrams.symbols import Expression, knot, knots
 
 UPWARD = [name for name, scheme in SCHEMES.items() if not scheme.downward]
 SVG = "{http://www.w3.org/2000/svg}"

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, exact
+from knotwork.arithmetic.kernel import wrapped
 from knotwork.errors import KnotworkError
-from knotwork.kernel import wrapped
-from knotwork.numbers import Array, exact
 
 
 @dataclass

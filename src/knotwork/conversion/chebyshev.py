@@ -18,12 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knotwork.banded import Banded
-from knotwork.elimination import solve
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import KnotError
 from knotwork.evaluation import Basis
 from knotwork.knots import nodes
-from knotwork.numbers import Array
+from knotwork.linear.banded import Banded
+from knotwork.linear.elimination import solve
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

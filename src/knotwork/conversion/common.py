@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import Banded
+from knotwork.arithmetic.arrays import Array
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.insertion.insert import insertion_matrix
 from knotwork.insertion.merge import rows_of_matrix
 from knotwork.knots import combine, distinct, merged, multiplicities
-from knotwork.numbers import Array
+from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

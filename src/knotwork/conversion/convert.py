@@ -7,17 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.banded import Banded, along, as_blocks
+from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, real_numbers, require_finite
 from knotwork.conversion.chebyshev import chebyshev
 from knotwork.conversion.common import common_refinement, difference, embedding, holds
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.conversion.polynomials import BASES, to_pieces
-from knotwork.elimination import solve
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import Basis
-from knotwork.least_squares import least_squares
-from knotwork.numbers import Array, exact, in_arithmetic_of, real_numbers, require_finite
+from knotwork.linear.banded import Banded, along, as_blocks
+from knotwork.linear.elimination import solve
+from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import Banded, along, as_blocks
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import KnotError
 from knotwork.insertion.insert import insertion_matrix
 from knotwork.knots import combine
-from knotwork.least_squares import least_squares
-from knotwork.numbers import Array
+from knotwork.linear.banded import Banded, along, as_blocks
+from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -13,19 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import Banded, along, as_blocks, combination
+from knotwork.arithmetic.arrays import Array, empty, require_room, whole
+from knotwork.arithmetic.kernel import extent, kernel
+from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import ParameterError
 from knotwork.insertion.merge import BLOCK, discrete_bsplines
-from knotwork.kernel import extent, kernel
 from knotwork.knots import merged, old_among, old_is_next
-from knotwork.numbers import Array, empty, require_room, whole
-from knotwork.parallel import in_parts
+from knotwork.linear.banded import Banded, along, as_blocks, combination
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 
 @kernel
-def insertion_row(U, lu, hu, W, lw, hw, R, i):  # type: ignore[no-untyped-def]
+def insertion_row(U, lu, hu, W, lw, hw, R, i):
     """R[i] = weights of the blossom at U[lu … hu-1] and W[lw … hw-1]; return their first column and how many follow.
 
     A new knot equal to the old one before the run stands for it.
@@ -38,14 +38,14 @@ def insertion_row(U, lu, hu, W, lw, hw, R, i):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def add_row(E, i, column, R, k, v, share):  # type: ignore[no-untyped-def]
+def add_row(E, i, column, R, k, v, share):
     """Add share · R[k, 0 … v] to E[i] from a column on."""
     for r in range(v + 1):
         E[i, column + r] += share * R[k, r]
 
 
 @kernel
-def raise_degree(T, U, W, n, lo, P, out, start, count, E, R, x, D):  # type: ignore[no-untyped-def]
+def raise_degree(T, U, W, n, lo, P, out, start, count, E, R, x, D):
     """out[a, i] = control point lo + i of degree n + 1, a block of rows of the matrix at a time.
 
     T is U and W merged, the raised knots; W holds each break once. Of each row of a block, `start` is the first column,

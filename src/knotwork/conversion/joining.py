@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import as_blocks
+from knotwork.arithmetic.arrays import Array, exact, numbers, require_finite, whole
 from knotwork.conversion.common import space_over
 from knotwork.conversion.convert import Conversion, convert, tolerance_of
 from knotwork.conversion.polynomials import PolynomialPieces, nets_of
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import from_bezier
 from knotwork.knots import sorted_knots
-from knotwork.numbers import Array, exact, numbers, require_finite, whole
+from knotwork.linear.banded import as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import Banded
+from knotwork.arithmetic.arrays import Array, exact, whole
 from knotwork.conversion.common import breaks_and_copies, common_refinement, embedding, space_over
 from knotwork.conversion.convert import Conversion, by_least_squares, concluded, solved, tolerance_of
 from knotwork.errors import ParameterError
-from knotwork.least_squares import least_squares
-from knotwork.numbers import Array, exact, whole
+from knotwork.linear.banded import Banded
+from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

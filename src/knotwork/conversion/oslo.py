@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from knotwork.banded import Banded, along, as_blocks
+from knotwork.arithmetic.arrays import Array, empty
+from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError
 from knotwork.insertion.merge import discrete_bsplines
-from knotwork.kernel import extent, kernel
 from knotwork.knots import last_at_most
-from knotwork.numbers import Array, empty
+from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 
 #: halvings of an interval in search of a maximum, whose relative error is about the square of what is left
@@ -24,7 +24,7 @@ HALVINGS = 28
 
 
 @kernel
-def size_of_dual(t, i, n, a, b, z):  # type: ignore[no-untyped-def]
+def size_of_dual(t, i, n, a, b, z):
     """Return |ψ_i(y)| / (b − a)ⁿ at y = a + z (b − a): ψ_i(y) = Π (t[i+j] − y), j = 1 … n."""
     size = z - z + 1
     for j in range(1, n + 1):
@@ -33,7 +33,7 @@ def size_of_dual(t, i, n, a, b, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def beta(t, i, n, a, b, enough):  # type: ignore[no-untyped-def]
+def beta(t, i, n, a, b, enough):
     """Return ‖ψ_i‖ on [a, b] over (b − a)ⁿ, floats (5.30); or something as large as `enough`, if it is that large.
 
     Between neighbouring roots log |ψ_i| is concave: its slope Σ 1 / (z − root) is halved down to zero.
@@ -64,7 +64,7 @@ def beta(t, i, n, a, b, enough):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def choose(U, first, last, t, at, n, mu, size):  # type: ignore[no-untyped-def]
+def choose(U, first, last, t, at, n, mu, size):
     """mu[i] = the interval of U in [first, last] that meets the support of function at + i over t with least β.
 
     size[i] is that β. Of a support that meets none, the nearest interval.
@@ -84,7 +84,7 @@ def choose(U, first, last, t, at, n, mu, size):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def reduce_order(U, q, t, i, n, x):  # type: ignore[no-untyped-def]
+def reduce_order(U, q, t, i, n, x):
     """Drop from t[i+1 … i+n] the longest run of knots of U about [U_q, U_{q+1}] that they hold (Theorem 5.4.6).
 
     Returns lu, hu and v: the run is U[lu … hu-1], and the v knots that are left stand in x.
@@ -123,7 +123,7 @@ def reduce_order(U, q, t, i, n, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def oslo_1(U, mu, t, at, n, start, count, E, x):  # type: ignore[no-untyped-def]
+def oslo_1(U, mu, t, at, n, start, count, E, x):
     """Rows of the conversion matrix: E[i, r], r = 0 … count[i], is the weight of point start[i] + r (5.14)."""
     for i in range(len(mu)):
         lu, hu, v = reduce_order(U, mu[i], t, at + i, n, x)
@@ -132,7 +132,7 @@ def oslo_1(U, mu, t, at, n, start, count, E, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def oslo_2(U, mu, t, at, n, P, out, c, x, D):  # type: ignore[no-untyped-def]
+def oslo_2(U, mu, t, at, n, P, out, c, x, D):
     """out[a, i] = the blossom of piece mu[i] at the knots of function at + i over t, by the triangle (5.18)."""
     for a in range(len(P)):
         for i in range(len(mu)):

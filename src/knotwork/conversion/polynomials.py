@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, exact, require_finite
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import to_bezier
-from knotwork.numbers import Array, exact, require_finite
 from knotwork.progressive import Curve, bernstein, change_basis, monomial
 from knotwork.spline import Spline
 

@@ -12,9 +12,9 @@ from functools import partial
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.entry import checked
-from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

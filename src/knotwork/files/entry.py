@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, KnotworkError
-from knotwork.numbers import Array
 
 _RATIO = re.compile(r"-?[0-9]+(/0*[1-9][0-9]*)?")
 _T = TypeVar("_T")

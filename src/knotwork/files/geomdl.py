@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, require_finite
 from knotwork.errors import FileError, PointError
 from knotwork.files.entry import Entry, checked
-from knotwork.numbers import Array, require_finite
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.files.lengths import increasing
 from knotwork.files.storage import text
-from knotwork.numbers import Array
+from knotwork.geometry.lengths import increasing
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import require_room
 from knotwork.errors import FileError, SizeError
-from knotwork.numbers import require_room
 
 
 def fetch(path: Path) -> bytes:

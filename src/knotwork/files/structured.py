@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.entry import Entry, checked
 from knotwork.files.geomdl import shapes
 from knotwork.files.storage import text
-from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -7,8 +7,9 @@ from knotwork.insertion.insert import insert, insertion_matrix
 from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
 if TYPE_CHECKING:
+    from knotwork.diagrams.insertion import diagram
+    from knotwork.diagrams.insertion_figures import FIGURES, figure
     from knotwork.insertion.catalogue import METHODS, Method, count
-    from knotwork.insertion.diagrams import FIGURES, diagram, figure
     from knotwork.insertion.factored import Startup
 
 __all__ = [
@@ -30,13 +31,13 @@ __all__ = [
 
 #: what is loaded when it is first asked for
 _LATER = {
-    "FIGURES": "diagrams",
-    "METHODS": "catalogue",
-    "Method": "catalogue",
-    "Startup": "factored",
-    "count": "catalogue",
-    "diagram": "diagrams",
-    "figure": "diagrams",
+    "FIGURES": "diagrams.insertion_figures",
+    "METHODS": "insertion.catalogue",
+    "Method": "insertion.catalogue",
+    "Startup": "insertion.factored",
+    "count": "insertion.catalogue",
+    "diagram": "diagrams.insertion",
+    "figure": "diagrams.insertion_figures",
 }
 
 
@@ -44,4 +45,4 @@ def __getattr__(name: str) -> Any:
     """Load the part that a name lives in."""
     if name not in _LATER:
         raise AttributeError(f"module 'knotwork.insertion' has no attribute {name!r}")
-    return getattr(importlib.import_module(f"knotwork.insertion.{_LATER[name]}"), name)
+    return getattr(importlib.import_module(f"knotwork.{_LATER[name]}"), name)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.insertion.crossovers import CROSSOVERS
-from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

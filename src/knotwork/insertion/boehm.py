@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.forms import combine, copy, copy_points, level
 from knotwork.insertion.steps import by_intervals
-from knotwork.kernel import kernel
 from knotwork.knots import last_at_most
 
 
 @kernel
-def one_knot(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
+def one_knot(t, P, n, first, last, u, s, W, D):
     """Insert u into [t_q, t_{q+1}): W_i = B(t_{i+1}, …, u, …, t_{i+n-1}) for q-n < i <= q, the rest are copies.
 
     The new knot vector goes to s. Returns how often u was a knot before; q is sought between `first` and `last`, and
@@ -47,7 +47,7 @@ def one_knot(t, P, n, first, last, u, s, W, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def one_at_a_time(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def one_at_a_time(Z, t, b, n, m, A, C, stack, K, D):
     """Insert t_{n+1} … t_{n+m}: each is one level of the triangle over the n knots at its left and b (Fig. 4.1).
 
     In the factored form, over t_{k+1} … t_{k+n}, δⁿ, this is step 4 of factored knot insertion (§3.2).
@@ -59,7 +59,7 @@ def one_at_a_time(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-
 
 
 @kernel
-def one_value_at_a_time(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def one_value_at_a_time(Z, t, b, n, m, A, C, stack, K, D):
     """The same, but r equal knots by one triangle of r levels: its left edge, top row and right edge (§2.2.3)."""
     F = A[0]
     k = 0

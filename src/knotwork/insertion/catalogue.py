@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.counting import Counting, Counts, counting
-from knotwork.banded import Banded, along, as_blocks
+from knotwork.arithmetic.kernel import Kernel
 from knotwork.errors import ParameterError
 from knotwork.insertion import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
 from knotwork.insertion.predictions import Formula, Size
 from knotwork.insertion.refinement import around, missing_knots, refine_to
 from knotwork.insertion.setting import Setting, in_real_coordinates
-from knotwork.kernel import Kernel
-from knotwork.numbers import Array
+from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

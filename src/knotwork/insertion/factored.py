@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, real_numbers, whole
+from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.forms import copy, copy_points, divide, division_triangle, factored
 from knotwork.insertion.oslo import triangle
 from knotwork.insertion.setting import in_real_coordinates
 from knotwork.insertion.steps import by_intervals, by_vertices
-from knotwork.kernel import extent, kernel
 from knotwork.knots import some_knots
-from knotwork.numbers import Array, real_numbers, whole
 from knotwork.spline import Spline
 
 #: what combines two points of this chapter: P + (u - a) Q
@@ -25,7 +25,7 @@ combine = factored
 
 
 @kernel
-def skip_equal(S, P, Q, a, b, u, D):  # type: ignore[no-untyped-def]
+def skip_equal(S, P, Q, a, b, u, D):
     """P + (u - a) Q, which is P where u is the knot a again (§3.6.6)."""
     if u == a:
         for c in range(len(D)):
@@ -37,7 +37,7 @@ def skip_equal(S, P, Q, a, b, u, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
+def rounds(Z, first, e, P, s, n, count, D):
     """Step 4: in round i P_j becomes P_j + (s_{i+n} - s_{i+j}) P_{j+1}; P_0 is the vertex Z[first + e i] (Fig. 3.5).
 
     A point that no longer reaches a vertex of the last rounds is not computed.
@@ -49,7 +49,7 @@ def rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def nested_rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
+def nested_rounds(Z, first, e, P, s, n, count, D):
     """Step 4': P_j becomes P_j + (s_{i+n-j} - s_i) P_{j+1}, j = min(i, n) - 1 … 0: nested multiplication (Fig. 3.3)."""
     for i in range(1, count + 1):
         for j in range(min(i, n) - 1, -1, -1):
@@ -59,7 +59,7 @@ def nested_rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-de
 
 
 @kernel
-def equal_rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def]
+def equal_rounds(Z, first, e, P, s, n, count, D):
     """Step 4 by additions alone where s_i … s_{i+n} are equally spaced (Fig. 3.10), as it is elsewhere.
 
     With spacing h the points c_j P_j, c_j = h^j n! / (n - j)!, follow c_j P_j + c_{j+1} P_{j+1}.
@@ -92,7 +92,7 @@ def equal_rounds(Z, first, e, P, s, n, count, D):  # type: ignore[no-untyped-def
 
 
 @kernel
-def forward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def forward(Z, t, b, n, m, A, C, stack, K, D):
     """Steps 1 to 4 for one interval: the new knots ascending, then the old ones at the right (Fig. 3.2)."""
     for i in range(n + m):
         K[i] = t[i]
@@ -105,7 +105,7 @@ def forward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def backward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def backward(Z, t, b, n, m, A, C, stack, K, D):
     """The mirror image: from the right edge of the division triangle, the new knots descending (§3.6.1)."""
     for i in range(n):
         K[i] = b[n - 1 - i]
@@ -120,7 +120,7 @@ def backward(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def both_ways(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def both_ways(Z, t, b, n, m, A, C, stack, K, D):
     """Part forward, part backward, from the two edges of one division triangle (§3.6.1)."""
     copy_points(A[0], Z, n + 1, D)
     copy(A[1, 0], A[0, n], D)
@@ -144,7 +144,7 @@ def both_ways(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def load_neighbour(F, G, P, U, q, before, n, D):  # type: ignore[no-untyped-def]
+def load_neighbour(F, G, P, U, q, before, n, D):
     """F = the left side of the division triangle G of interval q, one side new if q follows `before` (Fig. 3.9).
 
     D_i^j = (D_i^{j-1} - D_{i-1}^{j-1}) / (t_{i+n-j+1} - t_i) does not depend on the interval: G[i - q + n, j] holds it.

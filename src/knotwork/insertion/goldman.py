@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.forms import copy, copy_points, kept, level
 from knotwork.insertion.steps import by_intervals, by_segments
-from knotwork.kernel import kernel
 
 
 @kernel
-def ascending(Z, F, t, b, x, n, levels, D):  # type: ignore[no-untyped-def]
+def ascending(Z, F, t, b, x, n, levels, D):
     """Z = left edge and top row of a triangle of x_1, x_2, … over F, which is overwritten: n + 1 points."""
     for r in range(levels):
         copy(Z[r], F[0], D)
@@ -17,14 +17,14 @@ def ascending(Z, F, t, b, x, n, levels, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def descending(C, t, b, n, x, g, D):  # type: ignore[no-untyped-def]
+def descending(C, t, b, n, x, g, D):
     """C = right edge of a triangle of x_g, x_{g-1}, …, x_2 over the last g of n + 1 points: C, which is overwritten."""
     for r in range(g - 1):
         level(C, C, t[n - g + 1 + r :], b[n - g + 1 :], g - 1 - r, x[g - 1 - r], D)
 
 
 @kernel
-def in_groups(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def in_groups(Z, t, b, n, m, A, C, stack, K, D):
     """Insert up to n + 1 knots at once: two triangles over the same points, smaller ones at the end (Fig. 4.5, 4.6)."""
     k = 0
     while k < m:
@@ -38,14 +38,14 @@ def in_groups(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def shared(F, a, b, x, p, n, D):  # type: ignore[no-untyped-def]
+def shared(F, a, b, x, p, n, D):
     """Put in x_{p+1} … x_n, which all vertices 0 … p of a group have: p + 1 points are left, over a_{n-p+1} …, b."""
     for r in range(n - p):
         level(F, F, a[r:], b, n - r, x[p + r], D)
 
 
 @kernel
-def shared_improved(F, a, b, x, p, n, D):  # type: ignore[no-untyped-def]
+def shared_improved(F, a, b, x, p, n, D):
     """The same, keeping what is an old knot beside the segment: of the points F[start …] are left. Returns start."""
     start = 0
     for r in range(n - p):
@@ -57,7 +57,7 @@ def shared_improved(F, a, b, x, p, n, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):
     """Vertices of a new segment: x_p … x_1 go in, then x_{n+1} … off the right edge (Fig. 4.7).
 
     The segment is that between x_p and x_{p+1}, p = k - 1. A whole group has p = n, smaller ones share x_{p+1} … x_n.
@@ -73,7 +73,7 @@ def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyp
 
 
 @kernel
-def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):
     """The same, where an argument that is an old knot beside the segment is not put in but kept.
 
     Of a row B(…, a, b) the points that have the innermost knot of a, or of b, among their arguments are simply kept; so

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import numbers
 from knotwork.errors import KnotError
 from knotwork.insertion.matrix import row
-from knotwork.numbers import numbers
 
 
 def discrete_bsplines(t: Sequence[Any], q: int, args: Sequence[Any]) -> list[Any]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from knotwork.banded import Banded
 from knotwork.insertion.auto import takes_boehm
 from knotwork.insertion.refinement import insert_one, matrix_to, missing_knots, refine
+from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

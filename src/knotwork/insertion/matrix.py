@@ -5,13 +5,13 @@ Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q; q is 
 
 from __future__ import annotations
 
+from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.forms import combine, copy, copy_points
 from knotwork.insertion.steps import by_intervals
-from knotwork.kernel import kernel
 
 
 @kernel
-def row(E, a, b, x, n, one):  # type: ignore[no-untyped-def]
+def row(E, a, b, x, n, one):
     """E[r] = α_{q-n+r}(i): an Oslo triangle of x_1 … x_n run from a 1 at its apex down to its base (Oslo I, Eq. 4.1).
 
     Each value is the sum of two terms, at the ends of a level zeros, as §4.17 counts it.
@@ -29,7 +29,7 @@ def row(E, a, b, x, n, one):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def rows(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
+def rows(E, U, T, old, where, n, one):
     """Find every row by itself; the row of an old vertex has a one alone."""
     for i in range(len(E)):
         q = where[i]
@@ -42,7 +42,7 @@ def rows(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def columns(E, U, W, interval, at, where, n, s, c, one, D):  # type: ignore[no-untyped-def]
+def columns(E, U, W, interval, at, where, n, s, c, one, D):
     """Find every column by Boehm's algorithm for the control points δ_ij, without the combinations of zeros (§4.17).
 
     New knot w lies in old interval[w]; column j begins at row at[j]. Knots in the first interval of B-spline j go in in
@@ -80,7 +80,7 @@ def columns(E, U, W, interval, at, where, n, s, c, one, D):  # type: ignore[no-u
 
 
 @kernel
-def morken(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
+def morken(E, U, T, old, where, n, one):
     """Fill the rows from the top, each from the left, by an identity of neighbouring entries (Eq. 4.8).
 
     With a = T_{i+n}, b = T_i: (t_{j+n+1} - b) α_j(i) = (t_{j+n+1} - a) α_j(i-1)
@@ -115,7 +115,7 @@ def morken(E, U, T, old, where, n, one):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def product(S, X, F, lo, hi, D):  # type: ignore[no-untyped-def]
+def product(S, X, F, lo, hi, D):
     """S = Σ X_j F_j for lo <= j <= hi."""
     for c in range(len(D)):
         S[c] = X[lo] * F[lo, c]
@@ -125,7 +125,7 @@ def product(S, X, F, lo, hi, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def apply(out, E, P, old, where, n, D):  # type: ignore[no-untyped-def]
+def apply(out, E, P, old, where, n, D):
     """out = E P, where old vertices are copied."""
     for i in range(len(out)):
         if old[i] >= 0:
@@ -138,7 +138,7 @@ def apply(out, E, P, old, where, n, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def weights(G, a, b, x, e, count, levels):  # type: ignore[no-untyped-def]
+def weights(G, a, b, x, e, count, levels):
     """G[r, j] = weight of the right parent of point j of level r + 1, in a triangle over count + 1 points.
 
     The arguments go in upwards from x_1 for e > 0, downwards to x_2 for e < 0.
@@ -150,7 +150,7 @@ def weights(G, a, b, x, e, count, levels):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def set_to(X, I, count):  # type: ignore[no-untyped-def]
+def set_to(X, I, count):
     """X = I, the unit matrix."""
     for i in range(count):
         for j in range(count):
@@ -158,7 +158,7 @@ def set_to(X, I, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def next_columns(X, G, m, r):  # type: ignore[no-untyped-def]
+def next_columns(X, G, m, r):
     """X[j] = coefficients of point j of level r + 1 in the points of the base, from those of level r, for j < m."""
     for j in range(m):
         w = G[r, j]
@@ -168,7 +168,7 @@ def next_columns(X, G, m, r):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def from_apex(E, G, k, j, one):  # type: ignore[no-untyped-def]
+def from_apex(E, G, k, j, one):
     """E[i] = coefficient of base point j + i in point j of level k: a triangle of k levels, top down, as in `row`."""
     zero = one - one
     E[0] = one
@@ -182,7 +182,7 @@ def from_apex(E, G, k, j, one):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):
     """Both triangles for every unit vector at once; the weights are shared. K[2] is the unit matrix."""
     G, X, F = K[0], K[1], A[0]
     k = 0
@@ -207,7 +207,7 @@ def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-u
 
 
 @kernel
-def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):
     """One triangle, top down, for every new vertex; those of one group are parts of two, which share the weights."""
     G, E, F = K[0], K[1, 0], A[0]
     k = 0

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import combination, long_sum, short_sum
-from knotwork.kernel import extent, kernel
+from knotwork.arithmetic.arrays import Array, empty
+from knotwork.arithmetic.kernel import extent, kernel
+from knotwork.arithmetic.parallel import in_parts
 from knotwork.knots import merge, merged, next_knot, old_among, require_multiplicity
-from knotwork.numbers import Array, empty
-from knotwork.parallel import in_parts
+from knotwork.linear.banded import combination, long_sum, short_sum
 
 #: rows whose weights are computed before they are applied to all curves of a net
 BLOCK = 64
@@ -21,14 +21,14 @@ TILE = 8
 
 
 @kernel
-def one_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
+def one_new(U, lu, hu, W, lw):
     """Return the weights of row i where one argument is new."""
     b = (W[lw] - U[lu - 1]) / (U[hu] - U[lu - 1])
     return 1 - b, b
 
 
 @kernel
-def two_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
+def two_new(U, lu, hu, W, lw):
     """Return the weights of row i where two arguments are new."""
     x, y = W[lw], W[lw + 1]
     b = (x - U[lu - 1]) / (U[hu] - U[lu - 1])
@@ -39,7 +39,7 @@ def two_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def three_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
+def three_new(U, lu, hu, W, lw):
     """Return the weights of row i where three arguments are new."""
     x, y, z = W[lw], W[lw + 1], W[lw + 2]
     L1, L2, L3 = U[lu - 1], U[lu - 2], U[lu - 3]
@@ -53,7 +53,7 @@ def three_new(U, lu, hu, W, lw):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_new(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def]
+def many_new(U, lu, hu, W, lw, v, E, i):
     """E[i] = the weights of row i where any v arguments are new."""
     zero = U[hu] - U[hu]
     E[i, 0] = zero + 1
@@ -68,7 +68,7 @@ def many_new(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def]
+def discrete_bsplines(U, lu, hu, W, lw, v, E, i):
     """E[i, r] = weight of P[lu-1-v+r] in the blossom at U[lu … hu-1] and W[lw … lw+v-1]: row i of the insertion matrix.
 
     The top-down recurrence of the discrete B-splines (Oslo I, §4.13) over the v new knots alone.
@@ -86,7 +86,7 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):  # type: ignore[no-untyped-def
 
 
 @kernel
-def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):  # type: ignore[no-untyped-def]
+def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):
     """out[0, i] = blossom of the curve P[0] at U[lu … hu-1] and W[lw … lw+v-1]; few weights stay in registers."""
     s = lu - 1 - v
     if v == 0:
@@ -104,7 +104,7 @@ def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):  # type: ignore[no-unty
 
 
 @kernel
-def refine_curve(U, W, stop, n, lo, T, P, out, E, D):  # type: ignore[no-untyped-def]
+def refine_curve(U, W, stop, n, lo, T, P, out, E, D):
     """T[i] = merged knot lo + i, out[0, i] = refined control point lo + i of the curve P[0]; E has room for a row.
 
     Returns false, and stops, where a knot occurs more than n + 1 times.
@@ -124,7 +124,7 @@ def refine_curve(U, W, stop, n, lo, T, P, out, E, D):  # type: ignore[no-untyped
 
 
 @kernel
-def matrix_rows(U, W, stop, n, lo, count, start, new, E):  # type: ignore[no-untyped-def]
+def matrix_rows(U, W, stop, n, lo, count, start, new, E):
     """E[i] = row lo + i of the insertion matrix from column start[i] on, new[i] of its arguments being new knots."""
     lu, hu = old_among(U, W, stop, lo), old_among(U, W, stop, lo + n)
     lw, hw = lo - lu, lo + n - hu
@@ -136,7 +136,7 @@ def matrix_rows(U, W, stop, n, lo, count, start, new, E):  # type: ignore[no-unt
 
 
 @kernel
-def refine_net(U, W, stop, n, lo, P, out, start, new, E, D):  # type: ignore[no-untyped-def]
+def refine_net(U, W, stop, n, lo, P, out, start, new, E, D):
     """out[a, i] = refined control point lo + i of each curve P[a], as many rows of the matrix at a time as fit E."""
     for top in range(0, out.shape[1], len(start)):
         count = min(len(start), out.shape[1] - top)

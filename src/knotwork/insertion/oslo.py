@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.forms import copy, kept, level
 from knotwork.insertion.steps import by_vertices
-from knotwork.kernel import kernel
 
 
 @kernel
-def triangle(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
+def triangle(S, F, a, b, x, n, D):
     """S = B(x_1 … x_n): an Oslo triangle of n levels (Fig. 4.2)."""
     for r in range(n):
         level(F, F, a[r:], b, n - r, x[r], D)
@@ -16,7 +16,7 @@ def triangle(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def triangle_improved(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
+def triangle_improved(S, F, a, b, x, n, D):
     """S = B(x_1 … x_n), with a level for each new knot alone (Fig. 4.4 shows what is saved).
 
     The old knots among the arguments are the last ones of a and the first ones of b: only the points that have them all

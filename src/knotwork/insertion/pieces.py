@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import along, as_blocks
+from knotwork.arithmetic.arrays import Array, exact, numbers, real_numbers
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.merge import refined
 from knotwork.knots import distinct, new_knots, sorted_knots
-from knotwork.numbers import Array, exact, numbers, real_numbers
+from knotwork.linear.banded import along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

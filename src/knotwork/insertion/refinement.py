@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import Banded, along, as_blocks
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
 from knotwork.insertion.boehm import one_knot
 from knotwork.insertion.merge import refined, rows_of_matrix
-from knotwork.kernel import extent
 from knotwork.knots import combine
-from knotwork.numbers import Array
+from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.forms import copy, copy_points, kept, level
 from knotwork.insertion.goldman import ascending, descending, in_groups, shared, shared_improved
 from knotwork.insertion.steps import by_intervals, by_segments
-from knotwork.kernel import kernel
 
 
 @kernel
-def tetrahedron(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+def tetrahedron(S, F, a, b, x, k, n, A, C, stack, D):
     """Vertices of a new segment: up the veer face with x_{n+1}, …, then parallel to the base with x_p, … (Fig. 4.3).
 
     The segment is that between x_p and x_{p+1}, p = k - 1. A whole group has p = n, smaller ones share x_{p+1} … x_n.
@@ -27,7 +27,7 @@ def tetrahedron(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped
 
 
 @kernel
-def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):
     """The same, where an argument that is an old knot beside the segment is not put in but kept.
 
     The veer face holds the row F[start …] over a[low …], b[start …], parallels to the base begin with a copy of it.
@@ -54,7 +54,7 @@ def tetrahedron_improved(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[n
 
 
 @kernel
-def halves(S, R, a, b, x, i, j, n, stack, D):  # type: ignore[no-untyped-def]
+def halves(S, R, a, b, x, i, j, n, stack, D):
     """S[s] = B(x_{s+1} … x_{s+n}) for i <= s <= j from the row R[0] of n + 1 points over a, b (Fig. 4.8).
 
     The arguments x_{j+1} … x_{n+i} of all of them go in first. Then the row serves both halves of i … j: in addition,
@@ -82,14 +82,14 @@ def halves(S, R, a, b, x, i, j, n, stack, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def recursive(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+def recursive(S, F, a, b, x, k, n, A, C, stack, D):
     """Vertices 0 … k - 1 by halves of halves."""
     copy_points(A[0], F, n + 1, D)
     halves(S, A, a, b, x, 0, k - 1, n, stack, D)
 
 
 @kernel
-def inner(Z, A, t, b, x, lo, hi, e, n, C, stack, D):  # type: ignore[no-untyped-def]
+def inner(Z, A, t, b, x, lo, hi, e, n, C, stack, D):
     """Z[s] = B(x_{s+1} … x_{s+n}) for lo <= s <= hi, from A[0] over t, b: a tetrahedron without its lone face.
 
     The lone face is that of s = lo - 1 for e = 1, of s = hi + 1 for e = -1.
@@ -104,14 +104,14 @@ def inner(Z, A, t, b, x, lo, hi, e, n, C, stack, D):  # type: ignore[no-untyped-
 
 
 @kernel
-def inner_by_halves(Z, A, t, b, x, lo, hi, e, n, C, stack, D):  # type: ignore[no-untyped-def]
+def inner_by_halves(Z, A, t, b, x, lo, hi, e, n, C, stack, D):
     """The same by halves of halves, from the first level of the veer face on (§4.9)."""
     if lo <= hi:
         halves(Z, A, t, b, x, lo, hi, n, stack, D)
 
 
 @kernel
-def two_tetrahedra(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def two_tetrahedra(Z, t, b, n, m, A, C, stack, K, D):
     """Insert up to 3n + 1 knots at once by two tetrahedra over the same points (§4.9), a last group by parts of them.
 
     Of a group of g > n knots x, the new vertices with both old and new knots are the edges of the two lone faces; the

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, empty
+from knotwork.arithmetic.kernel import Kernel, extent, kernel
 from knotwork.insertion.matrix import apply
-from knotwork.kernel import Kernel, extent, kernel
 from knotwork.knots import merged
-from knotwork.numbers import Array, empty
 
 
 def in_real_coordinates(points: Array) -> Array:
@@ -22,7 +22,7 @@ def in_real_coordinates(points: Array) -> Array:
 
 
 @kernel
-def count_new(gap, U, W, first, last):  # type: ignore[no-untyped-def]
+def count_new(gap, U, W, first, last):
     """Add the number of sorted W in [U_q, U_{q+1}) to gap[q], first <= q <= last; those beyond are in the last."""
     q = first
     for j in range(len(W)):
@@ -32,7 +32,7 @@ def count_new(gap, U, W, first, last):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def group(first, where, old, interval, T, n, lo, hi):  # type: ignore[no-untyped-def]
+def group(first, where, old, interval, T, n, lo, hi):
     """Divide the vertices into groups that affect one new segment in [lo, hi]; return their number.
 
     Group g begins at vertex first[g]; where[g] is the old interval of its segment, -1 if all its vertices are old.

@@ -6,17 +6,17 @@ finds one new vertex from old ones; a segment-oriented one up to n + 1 vertices 
 
 from __future__ import annotations
 
+from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.forms import copy, copy_points, finish, frame
-from knotwork.kernel import kernel
 
 
 @kernel
-def step(Z, t, b, n, m, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def step(Z, t, b, n, m, A, C, stack, K, D):
     """Z[i] = B(t_{i+1} …, b_1 …) for 0 <= i <= n + m, from Z[0 … n] over t_1 … t_n, b: bound by a method."""
 
 
 @kernel
-def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):  # type: ignore[no-untyped-def]
+def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):
     """Insert interval by interval, from the left: out[i … i + n] are the points over T[i + 1 … i + n], then U.
 
     Interval `last` is the last one of the domain that is not empty: it takes the knots at the end.
@@ -39,19 +39,19 @@ def by_intervals(out, T, P, U, W, last, n, A, C, stack, K, D):  # type: ignore[n
 
 
 @kernel
-def load(F, G, P, U, q, before, n, D):  # type: ignore[no-untyped-def]
+def load(F, G, P, U, q, before, n, D):
     """F = the n + 1 points of interval q, over the knots of the form; those of `before` were last. G is scratch."""
     copy_points(F, P[q - n :], n + 1, D)
     frame(F, U[q - n + 1 :], U[q + 1 :], n, D)
 
 
 @kernel
-def vertex(S, F, a, b, x, n, D):  # type: ignore[no-untyped-def]
+def vertex(S, F, a, b, x, n, D):
     """S = B(x_1 … x_n) from F over a, b, which is overwritten: bound by a method."""
 
 
 @kernel
-def by_vertices(out, P, U, T, old, where, n, F, R, G, D):  # type: ignore[no-untyped-def]
+def by_vertices(out, P, U, T, old, where, n, F, R, G, D):
     """Find each new vertex from the old ones of interval where[i], unless it is the old vertex old[i] >= 0."""
     q = -1
     for i in range(len(out)):
@@ -66,12 +66,12 @@ def by_vertices(out, P, U, T, old, where, n, F, R, G, D):  # type: ignore[no-unt
 
 
 @kernel
-def segment(S, F, a, b, x, k, n, A, C, stack, D):  # type: ignore[no-untyped-def]
+def segment(S, F, a, b, x, k, n, A, C, stack, D):
     """S[s] = B(x_{s+1} … x_{s+n}) for 0 <= s < k, from F over a, b, which is overwritten: bound by a method."""
 
 
 @kernel
-def by_segments(out, P, U, T, old, first, where, n, F, R, A, C, stack, D):  # type: ignore[no-untyped-def]
+def by_segments(out, P, U, T, old, first, where, n, F, R, A, C, stack, D):
     """Find the vertices first[g] … first[g + 1] - 1, which affect one new segment, from the old ones of where[g]."""
     q = -1
     for g in range(len(where)):

@@ -15,7 +15,9 @@ from knotwork.progressive.segments import blossom, segment
 from knotwork.progressive.sequence import Sequence
 
 if TYPE_CHECKING:
-    from knotwork.progressive.diagrams import FIGURES, Diagram, diagram, figure
+    from knotwork.diagrams import Diagram
+    from knotwork.diagrams.progressive import diagram
+    from knotwork.diagrams.progressive_figures import FIGURES, figure
 
 __all__ = [
     "DELTA",
@@ -49,6 +51,7 @@ def __getattr__(name: str) -> Any:
     """Load the diagrams when one is first asked for."""
     if name not in ("FIGURES", "Diagram", "diagram", "figure"):
         raise AttributeError(f"module 'knotwork.progressive' has no attribute {name!r}")
-    from knotwork.progressive import diagrams
+    from knotwork.diagrams import drawing, progressive, progressive_figures
 
-    return getattr(diagrams, name)
+    part = {"Diagram": drawing, "diagram": progressive}.get(name, progressive_figures)
+    return getattr(part, name)

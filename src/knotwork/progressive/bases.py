@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, numbers, real_numbers, require_finite, whole
 from knotwork.errors import KnotError
-from knotwork.numbers import Array, numbers, real_numbers, require_finite, whole
 from knotwork.progressive.homogeneous import DELTA, require_affine
 from knotwork.progressive.sequence import Sequence
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, whole
 from knotwork.errors import KnotError, ParameterError
-from knotwork.numbers import Array, whole
 from knotwork.progressive import procedures
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import beside, broken_at, pair

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, numbers, require_finite
+from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.kernel import extent
-from knotwork.numbers import Array, numbers, require_finite
 from knotwork.progressive import scheme
 from knotwork.progressive.homogeneous import (
     DELTA,
@@ -23,7 +23,7 @@ from knotwork.progressive.homogeneous import (
 )
 from knotwork.progressive.procedures import blossoms, left_edge, repeated, sablonniere, triangle
 from knotwork.progressive.sequence import Sequence
-from knotwork.space import Frozen
+from knotwork.value import Frozen
 
 _set = object.__setattr__
 

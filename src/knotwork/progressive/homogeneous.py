@@ -6,8 +6,8 @@ from typing import Any, cast
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, exact, numbers, require_finite
 from knotwork.errors import KnotError, KnotworkError, ParameterError
-from knotwork.numbers import Array, exact, numbers, require_finite
 
 #: the knot at infinity: the unit vector, as a homogeneous pair
 DELTA = (1, 0)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, exact, real_numbers
 from knotwork.errors import KnotError, ParameterError
-from knotwork.numbers import Array, exact, real_numbers
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import alike, crossed, pair, written
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, empty, numbers, require_finite, whole
+from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.kernel import extent, kernel
-from knotwork.numbers import Array, empty, numbers, require_finite, whole
 from knotwork.progressive.bases import flat_nodes
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import affine, alike, beside
@@ -16,7 +16,7 @@ from knotwork.progressive.scheme import over, quotient
 
 
 @kernel
-def differences(c, x, f, D):  # type: ignore[no-untyped-def]
+def differences(c, x, f, D):
     """c[q] = f[x_0 … x_q]: the table of divided differences. Where x_q repeats for the r-th time, f[q] is f^(r)(x_q).
 
     Equal nodes stand together.
@@ -45,7 +45,7 @@ def differences(c, x, f, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def march(out, difference, D):  # type: ignore[no-untyped-def]
+def march(out, difference, D):
     """out[i] = p(a + i h) from p(a), …, p(a + n h): differences Δ^k p(a), then n additions a point (§2.4.5)."""
     n = len(difference) - 1
     for k in range(1, n + 1):

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
-from knotwork.kernel import extent
-from knotwork.numbers import Array
 from knotwork.progressive import scheme
 from knotwork.progressive.homogeneous import beside, crossed, written
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.kernel import Kernel, kernel
-from knotwork.numbers import Array
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import Kernel, kernel
 
 __all__ = [
     "blossoms",
@@ -30,13 +30,13 @@ __all__ = [
 
 
 @kernel
-def quotient(a, b):  # type: ignore[no-untyped-def]
+def quotient(a, b):
     """a / b."""
     return a / b
 
 
 @kernel
-def complex_quotient(a, b):  # type: ignore[no-untyped-def]
+def complex_quotient(a, b):
     """a / b by divisions of real numbers, on which plain and compiled code agree to the last bit; b is scaled first."""
     s = 1 / max(abs(b.real), abs(b.imag))
     c = b * s
@@ -49,7 +49,7 @@ def over(knots: Array, procedure: Kernel) -> Kernel:
 
 
 @kernel
-def combine(S, P, Q, a, b, u, D):  # type: ignore[no-untyped-def]
+def combine(S, P, Q, a, b, u, D):
     """S = B(…, u) from P = B(…, a) and Q = B(…, b): (b × u P + u × a Q) / b × a; x × y = x_t y_w - y_t x_w (§2.3.2)."""
     d = b[0] * a[1] - a[0] * b[1]
     p = quotient(b[0] * u[1] - u[0] * b[1], d)
@@ -59,14 +59,14 @@ def combine(S, P, Q, a, b, u, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def level(S, R, a, b, m, u, D):  # type: ignore[no-untyped-def]
+def level(S, R, a, b, m, u, D):
     """One level: S[q] combines R[q] and R[q + 1], where the knots a[q] and b[q] give way to u. S may be R."""
     for q in range(m):
         combine(S[q], R[q], R[q + 1], a[q], b[q], u, D)
 
 
 @kernel
-def triangle(T, t, U, D):  # type: ignore[no-untyped-def]
+def triangle(T, t, U, D):
     """T[r, q] = P^r_{r+q} = B(U_1 … U_r, t_{r+q+1} … t_{q+n}): the homogeneous de Boor algorithm, Ramshaw's blossoming.
 
     T[0] holds the control points. The apex is B(U); the left edge T[r, 0] and the right edge T[r, n - r] are the new
@@ -78,7 +78,7 @@ def triangle(T, t, U, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def blossoms(out, P, t, U, R, D):  # type: ignore[no-untyped-def]
+def blossoms(out, P, t, U, R, D):
     """out[i] = B(U_i1 … U_in) for every row of U: one triangle each, in the one row R."""
     n = len(t) // 2
     for i in range(len(out)):
@@ -92,7 +92,7 @@ def blossoms(out, P, t, U, R, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def edge(out, P, t, A, delta, R, D):  # type: ignore[no-untyped-def]
+def edge(out, P, t, A, delta, R, D):
     """out[k, i] = p^(k)(A_i) = n!/(n-k)! B(δ^k, A_i^(n-k)), where P are control points over t_1 … t_n, δ^n (§2.3.3).
 
     The second stage of Boehm's derivative algorithm: A_i is inserted n times, the right edge holds the derivatives.
@@ -112,7 +112,7 @@ def edge(out, P, t, A, delta, R, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def boehm(T, a, b, D):  # type: ignore[no-untyped-def]
+def boehm(T, a, b, D):
     """T[2n] = control points over u_1 … u_2n, from T[0], those over t_1 … t_2n (§2.2.3).
 
     a = t_1 … t_n u_1 … u_n, b = u_{n+1} … u_2n t_{n+1} … t_2n. One at a time, u_2n … u_{n+1} and then u_1 … u_n go in
@@ -130,7 +130,7 @@ def boehm(T, a, b, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sablonniere(Q, T, t, U, V, R, D):  # type: ignore[no-untyped-def]
+def sablonniere(Q, T, t, U, V, R, D):
     """Q[s] = B(u_{s+1} … u_{s+n}), all from T[0]: up the lateral face by U, then parallel to the base by V (§2.2.5).
 
     U = u_{n+1} … u_2n are the heights of the tetrahedron; at height s, V = u_n … u_1 go in until there are n arguments.
@@ -148,7 +148,7 @@ def sablonniere(Q, T, t, U, V, R, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sablonniere_optimised(Q, t, u, R, first, last, D):  # type: ignore[no-untyped-def]
+def sablonniere_optimised(Q, t, u, R, first, last, D):
     """Q[s] = B(u_{s+1} … u_{s+n}), all from R[0], by the paths through the tetrahedron that share the most (§2.2.5).
 
     The new points i … j need the arguments u_{j+1} … u_{n+i}. A row that has them serves both halves of i … j: the
@@ -179,7 +179,7 @@ def sablonniere_optimised(Q, t, u, R, first, last, D):  # type: ignore[no-untype
 
 
 @kernel
-def cox_de_boor(b, t, x):  # type: ignore[no-untyped-def]
+def cox_de_boor(b, t, x):
     """b[i] = the basis functions at x_i: the triangle run from its apex down to its base (§2.2.1, Eq. 2.2)."""
     n = len(t) // 2
     for i in range(len(x)):
@@ -200,7 +200,7 @@ def cox_de_boor(b, t, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def polya(psi, t, x):  # type: ignore[no-untyped-def]
+def polya(psi, t, x):
     """psi[i, k] = Π_{j=1..n} (t_{k+j} - w_{k+j} x_i): the dual basis, homogenised in x_i and the knots (Eq. 2.12)."""
     n = len(t) // 2
     for i in range(len(x)):
@@ -212,7 +212,7 @@ def polya(psi, t, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def expansion(e, t, x):  # type: ignore[no-untyped-def]
+def expansion(e, t, x):
     """e[r] = coefficient of h^r in Π_j (t_j - w_j (x + h)): the Taylor coefficients of a dual function at x."""
     e[0] = x - x + 1
     for j in range(len(t)):
@@ -224,7 +224,7 @@ def expansion(e, t, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def integrate(Q, P, t, start, D):  # type: ignore[no-untyped-def]
+def integrate(Q, P, t, start, D):
     """Q = control points over t of a curve whose derivative has the control points P, with Q[start] = 0 (§2.3.5).
 
     The two-term derivative formula is solved for Q[k + 1] after `start` (the sums of the way with δ on the right), and

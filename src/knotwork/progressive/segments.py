@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, real_numbers, whole
 from knotwork.errors import ParameterError
-from knotwork.numbers import Array, real_numbers, whole
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import pairs, written
 from knotwork.progressive.procedures import blossoms

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, numbers, require_finite, whole
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.numbers import Array, numbers, require_finite, whole
 from knotwork.progressive import scheme
 from knotwork.progressive.homogeneous import affine, alike, beside, broken_at, crossed, pairs, require_together, written
 from knotwork.progressive.procedures import blossoms, repeated
-from knotwork.space import Frozen
+from knotwork.value import Frozen
 
 _set = object.__setattr__
 

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.kernel import kernel
-from knotwork.numbers import Array
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import kernel
 
 #: exact costs above this are as good as this; floats end not far beyond
 _MOST = 10**300
 
 
 @kernel
-def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):  # type: ignore[no-untyped-def]
+def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):
     """weight[…] = cost of the knots t[last[k]], one for each of its first copies[k] copies, taken one after another.
 
     The cost is the largest |e|·scale over the components, added up over the copies. s, c, a, b, e: room for knots,
@@ -50,7 +50,7 @@ def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):  # type: ignore[n
 
 
 @kernel
-def level(s, c, n, m, z, a, b, e):  # type: ignore[no-untyped-def]
+def level(s, c, n, m, z, a, b, e):
     """e = yᵀd / Σ|y|, and the ratios a, b of the rows, for one of the m copies of z in the local knots s.
 
     z stands at s[n+1 … n+m]; its rows are c[m-1 … n+1].
@@ -80,7 +80,7 @@ def level(s, c, n, m, z, a, b, e):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def take_out(s, c, n, m, a, b, e):  # type: ignore[no-untyped-def]
+def take_out(s, c, n, m, a, b, e):
     """Remove one copy of z from the local knots and points: solve the rows for c with the error ±e in them.
 
     From the top while b ≥ 1/2 and from the bottom below, so that errors do not grow; the row in between holds by

@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.banded import along, as_blocks
+from knotwork.arithmetic.arrays import Array, in_arithmetic_of, real_numbers
 from knotwork.errors import ParameterError
 from knotwork.insertion.refinement import matrix_to, refine_to
 from knotwork.knots import distinct, multiplicities
-from knotwork.least_squares import least_squares
-from knotwork.numbers import Array, in_arithmetic_of, real_numbers
+from knotwork.linear.banded import along, as_blocks
+from knotwork.linear.least_squares import least_squares
 from knotwork.removal.ranking import ranked
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline

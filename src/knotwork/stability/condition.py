@@ -23,11 +23,11 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.banded import Banded
-from knotwork.elimination import solve
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import KnotError
 from knotwork.insertion import insertion_matrix
-from knotwork.numbers import Array
+from knotwork.linear.banded import Banded
+from knotwork.linear.elimination import solve
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.conversion.oslo import conversion_matrix, least_pieces
 from knotwork.knots import multiplicities
-from knotwork.numbers import Array
 from knotwork.space import SplineSpace
 from knotwork.stability.worst import basis_condition
 

@@ -9,9 +9,9 @@ from typing import Any, Self
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import real_numbers, whole
 from knotwork.conversion.chebyshev import chebyshev
 from knotwork.errors import KnotError, ParameterError
-from knotwork.numbers import real_numbers, whole
 from knotwork.space import SplineSpace
 from knotwork.stability.condition import condition
 

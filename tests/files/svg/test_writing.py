@@ -16,7 +16,7 @@ import knotwork as kw
 from knotwork.errors import FileError
 from knotwork.files import read, write
 from knotwork.files.svg import decode, encode
-from knotwork.files.svg.cubics import cubics, distance, halves, hermite
+from knotwork.geometry.cubics import cubics, distance, halves, hermite
 from strategies import curves
 
 

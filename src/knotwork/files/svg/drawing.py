@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.files.svg.cubics import cubics
+from knotwork.geometry.cubics import cubics
 from knotwork.insertion import to_bezier
 from knotwork.knots import multiplicities
-from knotwork.numbers import Array
 from knotwork.spline import Spline
 
 #: accuracy unless one is asked for, as a part of the extent of the drawing

@@ -6,11 +6,12 @@ from itertools import chain
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.files.lengths import increasing
 from knotwork.files.svg.notation import Affine
 from knotwork.files.svg.pathdata import Point, Subpath
-from knotwork.numbers import Array
+from knotwork.geometry.bezier import raised
+from knotwork.geometry.lengths import increasing
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -69,15 +70,6 @@ def _nets(pieces: list[tuple[Point, ...]]) -> Array:
         chosen = np.flatnonzero(counts == count)
         points = np.array([*chain.from_iterable(pieces[i] for i in chosen)]).reshape(-1, count, 2)
         nets[chosen] = raised(points, nets.shape[1] - 1)
-    return nets
-
-
-def raised(nets: Array, n: int) -> Array:
-    """Return Bézier points of degree n for the same curves: Q_i = (1 - i/m) P_i + i/m P_{i-1}, for each m up to n."""
-    for m in range(nets.shape[1], n + 1):
-        share = (np.arange(1, m) / m)[:, None]
-        inner = (1 - share) * nets[:, 1:] + share * nets[:, :-1]
-        nets = np.concatenate([nets[:, :1], inner, nets[:, -1:]], axis=1)
     return nets
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 
-from knotwork.progressive.diagrams.drawing import LESSER, Diagram, Edge, Node
-from knotwork.progressive.diagrams.layout import Layout, Spot
-from knotwork.progressive.diagrams.lettering import width
-from knotwork.progressive.diagrams.recording import Value
-from knotwork.progressive.diagrams.symbols import label
+from knotwork.diagrams.drawing import LESSER, Diagram, Edge, Node
+from knotwork.diagrams.layout import Layout, Spot
+from knotwork.diagrams.lettering import width
+from knotwork.diagrams.recording import Value
+from knotwork.diagrams.symbols import label
 
 #: ems from panel to panel, and how wide they may stand together
 GAP, WIDEST = 2.5, 66.0

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import wrapped
+from knotwork.diagrams.symbols import Expression, Knot, knot, label
 from knotwork.errors import KnotError
-from knotwork.kernel import wrapped
-from knotwork.numbers import Array
-from knotwork.progressive.diagrams.symbols import Expression, Knot, knot, label
 from knotwork.progressive.homogeneous import crossed
 
 

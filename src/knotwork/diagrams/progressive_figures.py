@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
+from knotwork.diagrams.drawing import LESSER, Box, Diagram, Edge, Node, Path
+from knotwork.diagrams.lettering import HEIGHT, width
+from knotwork.diagrams.progressive import diagram
+from knotwork.diagrams.recording import Value, given, recording
+from knotwork.diagrams.symbols import knots, label, names
 from knotwork.errors import ParameterError
-from knotwork.numbers import Array
 from knotwork.progressive.curve import Curve
-from knotwork.progressive.diagrams.drawing import LESSER, Box, Diagram, Edge, Node, Path
-from knotwork.progressive.diagrams.lettering import HEIGHT, width
-from knotwork.progressive.diagrams.recording import Value, given, recording
-from knotwork.progressive.diagrams.schemes import diagram
-from knotwork.progressive.diagrams.symbols import knots, label, names
 from knotwork.progressive.homogeneous import pairs
 from knotwork.progressive.procedures import sablonniere, triangle
 

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, whole
+from knotwork.diagrams.drawing import Diagram
+from knotwork.diagrams.layout import Layout, Spot
+from knotwork.diagrams.picture import picture
+from knotwork.diagrams.recording import Value, given, recording
+from knotwork.diagrams.symbols import knot, names
+from knotwork.diagrams.symbols import knots as knots_of
 from knotwork.errors import KnotError, ParameterError
-from knotwork.numbers import Array, whole
 from knotwork.progressive import procedures
-from knotwork.progressive.diagrams.drawing import Diagram
-from knotwork.progressive.diagrams.layout import Layout, Spot
-from knotwork.progressive.diagrams.picture import picture
-from knotwork.progressive.diagrams.recording import Value, given, recording
-from knotwork.progressive.diagrams.symbols import knot, names
-from knotwork.progressive.diagrams.symbols import knots as knots_of
 from knotwork.progressive.homogeneous import DELTA
 from knotwork.progressive.procedures import left_edge, right_edge, triangle
 

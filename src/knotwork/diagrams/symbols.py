@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import KnotError
-from knotwork.numbers import Array
 from knotwork.progressive.homogeneous import DELTA, written
 
 #: a homogeneous knot (t, w) of expressions

@@ -7,16 +7,16 @@ from typing import Any, Self
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, numbers
+from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import PointError
-from knotwork.kernel import extent, kernel
-from knotwork.numbers import Array, empty, in_arithmetic_of, numbers
-from knotwork.space import Frozen
+from knotwork.value import Frozen
 
 _set = object.__setattr__
 
 
 @kernel
-def short_sum(out, a, i, P, s, w, D):  # type: ignore[no-untyped-def]
+def short_sum(out, a, i, P, s, w, D):
     """out[a, i] = Σ w[r] · P[a, s + r] for a tuple of weights."""
     for c in range(len(D)):
         total = w[0] * P[a, s, c]
@@ -26,7 +26,7 @@ def short_sum(out, a, i, P, s, w, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def long_sum(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
+def long_sum(out, a, i, P, s, E, j, v, D):
     """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v."""
     for c in range(len(D)):
         total = E[j, 0] * P[a, s, c]
@@ -36,7 +36,7 @@ def long_sum(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def combination(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
+def combination(out, a, i, P, s, E, j, v, D):
     """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v; one vector loop for the short sums."""
     if v == 0:
         short_sum(out, a, i, P, s, (E[j, 0],), D)
@@ -51,7 +51,7 @@ def combination(out, a, i, P, s, E, j, v, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def apply_rows(first, E, P, out, D):  # type: ignore[no-untyped-def]
+def apply_rows(first, E, P, out, D):
     """out[a, i] = Σ_r E[i, r] · P[a, first[i] + r] for every a and row i."""
     v = E.shape[1] - 1
     for a in range(len(P)):
@@ -60,7 +60,7 @@ def apply_rows(first, E, P, out, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def pack(first, last, E, limit, wraps):  # type: ignore[no-untyped-def]
+def pack(first, last, E, limit, wraps):
     """Zero what follows E[i, last[i]]; unless the rows wrap around, move those that start beyond `limit` left to it."""
     for i in range(len(first)):
         shift = 0 if wraps else max(first[i] - limit, 0)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import Banded
-from knotwork.kernel import kernel
-from knotwork.numbers import Array
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import kernel
+from knotwork.linear.banded import Banded
 
 
 @kernel
-def eliminate(first, E, y):  # type: ignore[no-untyped-def]
+def eliminate(first, E, y):
     """Solve A·x = y in place of y; row i of A has the entries E[i] from column first[i] on, and `first` never falls."""
     width = E.shape[1]
     for i in range(len(first)):

@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array, whole
+from knotwork.diagrams.drawing import Diagram
+from knotwork.diagrams.layout import Layout, Spot
+from knotwork.diagrams.picture import picture
+from knotwork.diagrams.recording import Value, given, recording
+from knotwork.diagrams.symbols import Expression, label, names
+from knotwork.diagrams.symbols import knots as knots_of
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.catalogue import METHODS, Method, method_named
 from knotwork.insertion.setting import Setting
-from knotwork.numbers import Array, whole
-from knotwork.progressive.diagrams.drawing import Diagram
-from knotwork.progressive.diagrams.layout import Layout, Spot
-from knotwork.progressive.diagrams.picture import picture
-from knotwork.progressive.diagrams.recording import Value, given, recording
-from knotwork.progressive.diagrams.symbols import Expression, label, names
-from knotwork.progressive.diagrams.symbols import knots as knots_of
 from knotwork.progressive.homogeneous import DELTA
 
 #: how to read the two-point kernels of the factored form: the right point of a combination has a δ

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.numbers import Array
+from knotwork.arithmetic.arrays import Array
 
 
 def increasing(lengths: Array) -> Array:

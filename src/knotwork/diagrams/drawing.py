@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any, NamedTuple
 
-from knotwork.progressive.diagrams.lettering import HEIGHT, mathtext, spans, width
+from knotwork.diagrams.lettering import HEIGHT, mathtext, spans, width
 
 INK, LINE, NAME, GIVEN, RESULT, PALE = "#1f3a5f", "#9aa1a9", "#70757a", "#e9eff6", "#c4502f", "#fcefe9"
 

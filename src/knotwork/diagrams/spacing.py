@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import wrapped
+from knotwork.diagrams.drawing import Diagram
+from knotwork.diagrams.insertion import UNIT, Scheme
+from knotwork.diagrams.layout import Spot
+from knotwork.diagrams.picture import arguments, picture
+from knotwork.diagrams.recording import Value, combined, given
+from knotwork.diagrams.symbols import Expression, knot, knots, names
 from knotwork.insertion import factored
-from knotwork.insertion.diagrams.methods import UNIT, Scheme
-from knotwork.kernel import wrapped
-from knotwork.numbers import Array
-from knotwork.progressive.diagrams.drawing import Diagram
-from knotwork.progressive.diagrams.layout import Spot
-from knotwork.progressive.diagrams.picture import arguments, picture
-from knotwork.progressive.diagrams.recording import Value, combined, given
-from knotwork.progressive.diagrams.symbols import Expression, knot, knots, names
 from knotwork.progressive.homogeneous import DELTA
 
 #: the degree

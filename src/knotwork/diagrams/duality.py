@@ -11,14 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from knotwork.diagrams.drawing import LESSER, Diagram, Edge, Node
+from knotwork.diagrams.insertion import DIFFERENCE, FACTORED, UNIT, Scheme, symbols
+from knotwork.diagrams.layout import Spot
+from knotwork.diagrams.lettering import width
+from knotwork.diagrams.picture import arguments, picture
+from knotwork.diagrams.recording import Value, given, recording
+from knotwork.diagrams.symbols import knot, knots, names
 from knotwork.insertion import factored
-from knotwork.insertion.diagrams.methods import DIFFERENCE, FACTORED, UNIT, Scheme, symbols
-from knotwork.progressive.diagrams.drawing import LESSER, Diagram, Edge, Node
-from knotwork.progressive.diagrams.layout import Spot
-from knotwork.progressive.diagrams.lettering import width
-from knotwork.progressive.diagrams.picture import arguments, picture
-from knotwork.progressive.diagrams.recording import Value, given, recording
-from knotwork.progressive.diagrams.symbols import knot, knots, names
 from knotwork.progressive.homogeneous import DELTA
 
 #: the degree

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.banded import Banded
-from knotwork.kernel import kernel
-from knotwork.numbers import Array
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import kernel
+from knotwork.linear.banded import Banded
 
 
 @kernel
-def triangularise(first, X, weight, y, R, D, z, x, p):  # type: ignore[no-untyped-def]
+def triangularise(first, X, weight, y, R, D, z, x, p):
     """Bring the rows √weight·(X | y), with entries from column first[i] on, to triangular form √D·(R | z).
 
     Givens rotations without square roots (Gentleman 1973). `first` does not decrease, so R is as narrow as X; its
@@ -43,7 +43,7 @@ def triangularise(first, X, weight, y, R, D, z, x, p):  # type: ignore[no-untype
 
 
 @kernel
-def back_substitute(R, z):  # type: ignore[no-untyped-def]
+def back_substitute(R, z):
     """Solve R·c = z in place of z, R unit upper triangular and banded."""
     for k in range(len(z) - 1, -1, -1):
         for q in range(1, min(R.shape[1], len(z) - k)):

@@ -6,9 +6,9 @@ from math import comb
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.files.svg.outlines import raised
-from knotwork.numbers import Array
+from knotwork.geometry.bezier import halves, raised
 
 #: halvings of one piece, and pieces in one step, at most
 HALVINGS = 40
@@ -73,13 +73,3 @@ def distance(nets: Array, near: Array) -> Array:
     difference = raised(nets[..., :2], n + 3) - product
     size: Array = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1) / w.min(axis=1)
     return size
-
-
-def halves(nets: Array) -> tuple[Array, Array]:
-    """Return the two halves of Bézier curves (de Casteljau)."""
-    left, right = np.empty_like(nets), np.empty_like(nets)
-    count = nets.shape[1]
-    for k in range(count):
-        left[:, k], right[:, count - 1 - k] = nets[:, 0], nets[:, -1]
-        nets = nets[:, :-1] / 2 + nets[:, 1:] / 2
-    return left, right

@@ -6,21 +6,21 @@ from collections.abc import Collection
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import Kernel
+from knotwork.diagrams.drawing import LESSER, Diagram, Edge, Node
+from knotwork.diagrams.duality import differencing, duality
+from knotwork.diagrams.insertion import FACTORED, Scheme, diagram, scheme_of, symbols
+from knotwork.diagrams.layout import Spot
+from knotwork.diagrams.lettering import width
+from knotwork.diagrams.picture import arguments, picture
+from knotwork.diagrams.progressive_figures import Figure, numbered
+from knotwork.diagrams.recording import Value, given, recording
+from knotwork.diagrams.spacing import evenly_spaced
+from knotwork.diagrams.symbols import Knot, knots, label, names
 from knotwork.insertion import factored, forms, oslo, sablonniere
 from knotwork.insertion.catalogue import METHODS
-from knotwork.insertion.diagrams.duality import differencing, duality
-from knotwork.insertion.diagrams.methods import FACTORED, Scheme, diagram, scheme_of, symbols
-from knotwork.insertion.diagrams.spacing import evenly_spaced
 from knotwork.insertion.goldman import two_triangles
-from knotwork.kernel import Kernel
-from knotwork.numbers import Array
-from knotwork.progressive.diagrams.drawing import LESSER, Diagram, Edge, Node
-from knotwork.progressive.diagrams.figures import Figure, numbered
-from knotwork.progressive.diagrams.layout import Spot
-from knotwork.progressive.diagrams.lettering import width
-from knotwork.progressive.diagrams.picture import arguments, picture
-from knotwork.progressive.diagrams.recording import Value, given, recording
-from knotwork.progressive.diagrams.symbols import Knot, knots, label, names
 from knotwork.progressive.homogeneous import DELTA
 
 #: points have one coordinate, which is a value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from knotwork.progressive.diagrams.recording import Value
+from knotwork.diagrams.recording import Value
 
 
 @dataclass(frozen=True)

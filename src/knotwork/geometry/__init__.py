@@ -1,0 +1,1 @@
+"""Bézier nets, lengths and distances: what files, sketches and reduction share."""

@@ -1,0 +1,26 @@
+"""Arrays of Bézier points, one net a piece: degree raised, halved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+
+
+def raised(nets: Array, n: int) -> Array:
+    """Return Bézier points of degree n for the same curves: Q_i = (1 - i/m) P_i + i/m P_{i-1}, for each m up to n."""
+    for m in range(nets.shape[1], n + 1):
+        share = (np.arange(1, m) / m)[:, None]
+        inner = (1 - share) * nets[:, 1:] + share * nets[:, :-1]
+        nets = np.concatenate([nets[:, :1], inner, nets[:, -1:]], axis=1)
+    return nets
+
+
+def halves(nets: Array) -> tuple[Array, Array]:
+    """Return the two halves of Bézier curves (de Casteljau)."""
+    left, right = np.empty_like(nets), np.empty_like(nets)
+    count = nets.shape[1]
+    for k in range(count):
+        left[:, k], right[:, count - 1 - k] = nets[:, 0], nets[:, -1]
+        nets = nets[:, :-1] / 2 + nets[:, 1:] / 2
+    return left, right
