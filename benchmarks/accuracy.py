@@ -17,7 +17,7 @@ import numpy as np
 import knotwork as kw
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
-from knotwork.insertion.setting import Setting
+from knotwork.insertion.methods.setting import Setting
 from race import keep, short
 
 DEGREES = range(1, 8)

@@ -20,8 +20,8 @@ import knotwork as kw
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.merge import refined
+from knotwork.insertion.methods.setting import Setting
 from knotwork.insertion.refinement import refine
-from knotwork.insertion.setting import Setting
 from peers import installed
 from run import readable, timed
 

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from knotwork.cli import main
 from knotwork.insertion import METHODS
-from knotwork.insertion.tables import tables
+from knotwork.insertion.counts.tables import tables
 
 
 def run(*words, code=0):

@@ -22,7 +22,7 @@ from knotwork import insertion, progressive
 from knotwork.arithmetic import kernel as kernels
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.conversion.oslo import conversion_matrix, converted
-from knotwork.insertion import forms, steps
+from knotwork.insertion.methods import forms, steps
 
 SOURCE = Path(kw.__file__).parent.parent
 

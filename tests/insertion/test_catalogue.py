@@ -16,7 +16,7 @@ import strategies as kinds
 from knotwork import Spline
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion import METHODS, count
-from knotwork.insertion.catalogue import FORMS
+from knotwork.insertion.methods.catalogue import FORMS
 
 F = Fraction
 NAN, INF = float("nan"), float("inf")
@@ -228,7 +228,7 @@ def test_every_method_refuses_bad_input_before_any_work(name, spline, knots, axi
     def work(*args):
         raise AssertionError("work was begun")
 
-    monkeypatch.setattr("knotwork.insertion.catalogue._setting", work)
+    monkeypatch.setattr("knotwork.insertion.methods.catalogue.setting_of", work)
     with pytest.raises(error, match=says):
         kw.insert(spline, knots, axis, method=name)
     with pytest.raises(error, match=says):

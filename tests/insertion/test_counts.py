@@ -17,7 +17,7 @@ import strategies as kinds
 from knotwork import Spline, SplineSpace
 from knotwork.arithmetic import Counts
 from knotwork.insertion import METHODS, count
-from knotwork.insertion.predictions import halves
+from knotwork.insertion.methods.predictions import halves
 
 F = Fraction
 EVERY = pytest.mark.parametrize("name", METHODS)

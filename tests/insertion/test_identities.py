@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import knotwork as kw
 import oracle
 import strategies as kinds
-from knotwork.insertion import identities
+from knotwork.insertion.methods import identities
 
 F = Fraction
 EXACT = st.fractions(-4, 4, max_denominator=16)

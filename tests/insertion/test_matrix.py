@@ -14,8 +14,9 @@ import knotwork as kw
 import oracle
 import strategies as kinds
 from knotwork import Spline, SplineSpace
-from knotwork.insertion import METHODS, matrix
-from knotwork.insertion.setting import Setting
+from knotwork.insertion import METHODS
+from knotwork.insertion.methods import matrix
+from knotwork.insertion.methods.setting import Setting
 
 F = Fraction
 MATRIX = [name for name, method in METHODS.items() if method.form == "matrix"]

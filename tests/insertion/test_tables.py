@@ -5,7 +5,7 @@ from dataclasses import astuple
 import pytest
 
 import knotwork as kw
-from knotwork.insertion.tables import MATRIX, POINT, tables
+from knotwork.insertion.counts.tables import MATRIX, POINT, tables
 
 #: the text's combinations for points, by degree n, new knots m, vertices to find r, vertices afterwards v = p + m
 COMBINATIONS = {

@@ -12,7 +12,7 @@ from knotwork.cli.commands import as_json as json_option
 from knotwork.cli.commands import main, print_json
 
 if TYPE_CHECKING:
-    from knotwork.insertion.tables import Line, Table
+    from knotwork.insertion.counts.tables import Line, Table
 
 
 @main.command(short_help="List all methods of knot insertion.")
@@ -26,7 +26,7 @@ def methods(as_json: bool) -> None:
     Example:
       knotwork methods --json
     """
-    from knotwork.insertion.catalogue import METHODS
+    from knotwork.insertion.methods.catalogue import METHODS
 
     told = [
         {"name": m.name, "family": m.family, "form": m.form, "section": m.section, "summary": m.summary}
@@ -57,7 +57,7 @@ def count(degree: int, dim: int, knots: int, across: int | None, as_json: bool) 
       knotwork count --degree 3 --dim 3 --knots 20
       knotwork count --degree 7 --knots 88 --across 8
     """
-    from knotwork.insertion.tables import tables
+    from knotwork.insertion.counts.tables import tables
 
     found = tables(degree, dim, knots, across)
     if as_json:

@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix
-from knotwork.insertion.insert import insertion_matrix
+from knotwork.insertion.face import insertion_matrix
 from knotwork.insertion.merge import rows_of_matrix
 from knotwork.knots import combine, distinct, merged, multiplicities
 from knotwork.linear.banded import Banded

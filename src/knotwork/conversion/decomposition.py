@@ -6,7 +6,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import KnotError
-from knotwork.insertion.insert import insertion_matrix
+from knotwork.insertion.face import insertion_matrix
 from knotwork.knots import combine
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.linear.least_squares import least_squares

@@ -18,7 +18,7 @@ from knotwork.diagrams.lettering import width
 from knotwork.diagrams.picture import arguments, picture
 from knotwork.diagrams.recording import Value, given, recording
 from knotwork.diagrams.symbols import knot, knots, names
-from knotwork.insertion import factored
+from knotwork.insertion.methods import factored
 from knotwork.progressive.homogeneous import DELTA
 
 #: the degree

@@ -15,8 +15,8 @@ from knotwork.diagrams.recording import Value, given, recording
 from knotwork.diagrams.symbols import Expression, label, names
 from knotwork.diagrams.symbols import knots as knots_of
 from knotwork.errors import KnotError, ParameterError
-from knotwork.insertion.catalogue import METHODS, Method, method_named
-from knotwork.insertion.setting import Setting
+from knotwork.insertion.methods.catalogue import METHODS, Method, method_named
+from knotwork.insertion.methods.setting import Setting
 from knotwork.progressive.homogeneous import DELTA
 
 #: how to read the two-point kernels of the factored form: the right point of a combination has a δ

@@ -18,9 +18,9 @@ from knotwork.diagrams.progressive_figures import Figure, numbered
 from knotwork.diagrams.recording import Value, given, recording
 from knotwork.diagrams.spacing import evenly_spaced
 from knotwork.diagrams.symbols import Knot, knots, label, names
-from knotwork.insertion import factored, forms, oslo, sablonniere
-from knotwork.insertion.catalogue import METHODS
-from knotwork.insertion.goldman import two_triangles
+from knotwork.insertion.methods import factored, forms, oslo, sablonniere
+from knotwork.insertion.methods.catalogue import METHODS
+from knotwork.insertion.methods.goldman import two_triangles
 from knotwork.progressive.homogeneous import DELTA
 
 #: points have one coordinate, which is a value

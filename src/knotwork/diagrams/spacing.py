@@ -15,7 +15,7 @@ from knotwork.diagrams.layout import Spot
 from knotwork.diagrams.picture import arguments, picture
 from knotwork.diagrams.recording import Value, combined, given
 from knotwork.diagrams.symbols import Expression, knot, knots, names
-from knotwork.insertion import factored
+from knotwork.insertion.methods import factored
 from knotwork.progressive.homogeneous import DELTA
 
 #: the degree

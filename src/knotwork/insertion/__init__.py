@@ -1,16 +1,17 @@
-"""Knot insertion (chapters 3 and 4): one module a family, a catalogue of all methods, and `insert`, the face."""
+"""Knot insertion (chapters 3 and 4): `insert` and what it runs; all methods, one module a family; what they cost."""
 
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from knotwork.insertion.insert import insert, insertion_matrix
+from knotwork.insertion.face import insert, insertion_matrix
 from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
 if TYPE_CHECKING:
     from knotwork.diagrams.insertion import diagram
     from knotwork.diagrams.insertion_figures import FIGURES, figure
-    from knotwork.insertion.catalogue import METHODS, Method, count
-    from knotwork.insertion.factored import Startup
+    from knotwork.insertion.counts.measuring import count
+    from knotwork.insertion.methods.catalogue import METHODS, Method
+    from knotwork.insertion.methods.factored import Startup
 
 __all__ = [
     "FIGURES",
@@ -32,10 +33,10 @@ __all__ = [
 #: what is loaded when it is first asked for
 _LATER = {
     "FIGURES": "diagrams.insertion_figures",
-    "METHODS": "insertion.catalogue",
-    "Method": "insertion.catalogue",
-    "Startup": "insertion.factored",
-    "count": "insertion.catalogue",
+    "METHODS": "insertion.methods.catalogue",
+    "Method": "insertion.methods.catalogue",
+    "Startup": "insertion.methods.factored",
+    "count": "insertion.counts.measuring",
     "diagram": "diagrams.insertion",
     "figure": "diagrams.insertion_figures",
 }

@@ -7,8 +7,8 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
-from knotwork.insertion.boehm import one_knot
 from knotwork.insertion.merge import refined, rows_of_matrix
+from knotwork.insertion.single_knot import one_knot
 from knotwork.knots import combine
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace

@@ -1,9 +1,9 @@
 """How stable knot insertion is: condition numbers, the splines that attain them, bounds on rounding (chapters 5, 6)."""
 
-from knotwork.stability.condition import condition, extremal
+from knotwork.stability.condition_numbers import condition, extremal
 from knotwork.stability.conversion import ConversionBound, conversion_bound
 from knotwork.stability.rounding import relative_error_bound
-from knotwork.stability.worst import Worst, basis_condition, kappa, uniform, worst
+from knotwork.stability.worst_cases import Worst, basis_condition, kappa, uniform, worst
 
 __all__ = [
     "ConversionBound",

@@ -12,7 +12,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.conversion.oslo import conversion_matrix, least_pieces
 from knotwork.knots import multiplicities
 from knotwork.space import SplineSpace
-from knotwork.stability.worst import basis_condition
+from knotwork.stability.worst_cases import basis_condition
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from knotwork.arithmetic.arrays import real_numbers, whole
 from knotwork.conversion.chebyshev import chebyshev
 from knotwork.errors import KnotError, ParameterError
 from knotwork.space import SplineSpace
-from knotwork.stability.condition import condition
+from knotwork.stability.condition_numbers import condition
 
 
 class Worst(float):

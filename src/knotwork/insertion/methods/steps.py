@@ -7,7 +7,7 @@ finds one new vertex from old ones; a segment-oriented one up to n + 1 vertices 
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.forms import copy, copy_points, finish, frame
+from knotwork.insertion.methods.forms import copy, copy_points, finish, frame
 
 
 @kernel

@@ -11,7 +11,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, empty
 from knotwork.arithmetic.kernel import Kernel, extent, kernel
-from knotwork.insertion.matrix import apply
+from knotwork.insertion.methods.matrix import apply
 from knotwork.knots import merged
 
 

@@ -13,8 +13,9 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, whole
 from knotwork.arithmetic.counting import Counts
 from knotwork.errors import ParameterError
-from knotwork.insertion.catalogue import METHODS, count
-from knotwork.insertion.insert import insert
+from knotwork.insertion.counts.measuring import count
+from knotwork.insertion.face import insert
+from knotwork.insertion.methods.catalogue import METHODS
 from knotwork.spline import Spline, curve, surface
 
 #: the methods of Table 4.1, in the order of the text, each in three forms; Table 4.2 leaves out the last one, which is

@@ -19,7 +19,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import numbers
 from knotwork.errors import KnotError
-from knotwork.insertion.matrix import row
+from knotwork.insertion.methods.matrix import row
 
 
 def discrete_bsplines(t: Sequence[Any], q: int, args: Sequence[Any]) -> list[Any]:

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.arithmetic.counting import Counting, Counts, counting
+from knotwork.arithmetic.counting import Counts
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.errors import ParameterError
-from knotwork.insertion import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
-from knotwork.insertion.predictions import Formula, Size
+from knotwork.insertion.methods import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
+from knotwork.insertion.methods.predictions import Formula, Size
+from knotwork.insertion.methods.setting import Setting, in_real_coordinates
 from knotwork.insertion.refinement import around, missing_knots, refine_to
-from knotwork.insertion.setting import Setting, in_real_coordinates
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -63,7 +63,7 @@ class Method:
     def refine(self, spline: Spline, axis: int, new: Array) -> Spline:
         """Return the spline with sorted knots inside the domain in addition (trusted)."""
         refined = spline.spaces[axis].refined_by(new)
-        setting, part = _setting(spline, axis, new, refined.knots)
+        setting, part = setting_of(spline, axis, new, refined.knots)
         A, _, B = as_blocks(spline.coefficients, axis).shape
         points = self.points(setting)[part].view(spline.coefficients.dtype)
         out = np.ascontiguousarray(points.reshape(-1, A, B).transpose(1, 0, 2))
@@ -72,7 +72,7 @@ class Method:
     def matrix(self, space: SplineSpace, refined: SplineSpace) -> Banded:
         """Return the insertion matrix as this method finds it: from n + 1 colours of unit points; one of each a row."""
         new, n = missing_knots(space, refined), space.degree
-        setting, part = _setting(Spline.trusted((space,), np.arange(space.dimension)), 0, new)
+        setting, part = setting_of(Spline.trusted((space,), np.arange(space.dimension)), 0, new)
         owner = setting.P[:, 0]
         colours = np.zeros((len(owner), n + 1), int)
         colours[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
@@ -93,7 +93,7 @@ class Method:
         return self.costs(Size(n, m, r, n + 1 if p is None else p, d, intervals))
 
 
-def _setting(spline: Spline, axis: int, new: Array, merged: Array | None = None) -> tuple[Setting, slice]:
+def setting_of(spline: Spline, axis: int, new: Array, merged: Array | None = None) -> tuple[Setting, slice]:
     """Return what a method works on to insert sorted knots on one axis, and which of its points are asked for.
 
     A periodic space is unrolled.
@@ -267,34 +267,3 @@ def method_named(name: Any) -> Method:
         return METHODS[name]
     except (KeyError, TypeError):
         raise ParameterError(f"method {name!r} given; expected one of {', '.join(METHODS)}") from None
-
-
-def count(name: str, spline: Spline, knots: Any, axis: int = 0) -> Counts:
-    """Return what a method does to insert knots: its one source, run over numbers that count.
-
-    Parameters
-    ----------
-    name : str
-        One of `METHODS`.
-    spline, knots, axis
-        As for `knotwork.insert`; rational splines count as their homogeneous coordinates.
-
-    Examples
-    --------
-    >>> import knotwork as kw
-    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
-    >>> count("boehm", c, [0.25, 0.5, 0.75])
-    Counts(additions=45, multiplications=36, divisions=9, combinations=9)
-    >>> METHODS["boehm"].predict(n=3, m=3, d=2)
-    Counts(additions=45, multiplications=36, divisions=9, combinations=9)
-    """
-    method = method_named(name)
-    axis = spline.axis(axis)
-    space = spline.spaces[axis]
-    _, new = space.refinement(knots)
-    counted = SplineSpace.trusted(space.degree, Counting.array(space.knots), space.periodic)
-    points = spline.with_axis(axis, counted, Counting.array(spline.coefficients))
-    setting, _ = _setting(points, axis, Counting.array(new))
-    with counting() as counts:
-        method.points(setting)
-    return counts

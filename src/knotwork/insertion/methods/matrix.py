@@ -6,8 +6,8 @@ Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q; q is 
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.forms import combine, copy, copy_points
-from knotwork.insertion.steps import by_intervals
+from knotwork.insertion.methods.forms import combine, copy, copy_points
+from knotwork.insertion.methods.steps import by_intervals
 
 
 @kernel

@@ -13,10 +13,10 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, real_numbers, whole
 from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError, ParameterError
-from knotwork.insertion.forms import copy, copy_points, divide, division_triangle, factored
-from knotwork.insertion.oslo import triangle
-from knotwork.insertion.setting import in_real_coordinates
-from knotwork.insertion.steps import by_intervals, by_vertices
+from knotwork.insertion.methods.forms import copy, copy_points, divide, division_triangle, factored
+from knotwork.insertion.methods.oslo import triangle
+from knotwork.insertion.methods.setting import in_real_coordinates
+from knotwork.insertion.methods.steps import by_intervals, by_vertices
 from knotwork.knots import some_knots
 from knotwork.spline import Spline
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.forms import copy, kept, level
-from knotwork.insertion.steps import by_vertices
+from knotwork.insertion.methods.forms import copy, kept, level
+from knotwork.insertion.methods.steps import by_vertices
 
 
 @kernel

@@ -11,7 +11,7 @@ from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 if TYPE_CHECKING:
-    from knotwork.insertion.catalogue import Method
+    from knotwork.insertion.methods.catalogue import Method
 
 
 def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> Spline:
@@ -91,6 +91,6 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: str = "au
 
 def _method(name: str) -> Method:
     """Return a method of the catalogue, which is loaded only for those who ask for one."""
-    from knotwork.insertion.catalogue import method_named
+    from knotwork.insertion.methods.catalogue import method_named
 
     return method_named(name)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.forms import copy, copy_points, kept, level
-from knotwork.insertion.goldman import ascending, descending, in_groups, shared, shared_improved
-from knotwork.insertion.steps import by_intervals, by_segments
+from knotwork.insertion.methods.forms import copy, copy_points, kept, level
+from knotwork.insertion.methods.goldman import ascending, descending, in_groups, shared, shared_improved
+from knotwork.insertion.methods.steps import by_intervals, by_segments
 
 
 @kernel
