@@ -21,6 +21,10 @@ class SizeError(KnotworkError, MemoryError):
     """A request whose result cannot fit in memory."""
 
 
+class RoundingWarning(UserWarning):
+    """A tolerance below what rounding can keep; the message names the bound that holds instead."""
+
+
 class FileError(KnotworkError):
     """A file that cannot be read or written; the message names the file and the place in it."""
 
