@@ -117,5 +117,5 @@ def test_groups_that_are_not_complete():
 
 @pytest.mark.parametrize("given", [{"degree": 0}, {"dim": 1.5}, {"knots": -2}, {"across": 0}])
 def test_bad_sizes(given):
-    with pytest.raises(kw.insertion.tables.ParameterError, match="expected an integer of at least 1"):
+    with pytest.raises(kw.insertion.counts.tables.ParameterError, match="expected an integer of at least 1"):
         tables(**given)
