@@ -2,33 +2,41 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
+# Processes that share the tests: all cores unless told otherwise, as in `make test CORES=1`.
+CORES ?= auto
 
-.PHONY: demo test bench race crossovers accuracy lint clean
+.PHONY: help demo test thorough lint bench methods crossovers accuracy clean
+
+help:  ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
 
 demo: .venv/installed  ## reduce a coastline and a drawing, and show what happened
 	$(BIN)/python examples/demo.py
 
-test: .venv/tested
-	$(BIN)/python -m pytest
+test: .venv/tested  ## run the tests on all cores
+	$(BIN)/python -m pytest --numprocesses $(CORES)
 
-bench: .venv/tested
-	$(BIN)/python benchmarks/run.py
+thorough: .venv/tested  ## the same with a thousand new random examples for each property: takes long
+	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest --numprocesses $(CORES)
 
-race: .venv/tested  ## all methods of knot insertion and the peers; then docs/figures_insertion_study.py draws them
-	$(BIN)/python benchmarks/race.py
-
-crossovers: .venv/tested  ## measure what insert(method="auto") goes by
-	$(BIN)/python benchmarks/race.py --crossovers
-
-accuracy: .venv/tested  ## errors of all methods of knot insertion against exact results
-	$(BIN)/python benchmarks/accuracy.py
-
-lint: .venv/linted
+lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy --strict src
 
-clean:
+bench: .venv/tested  ## race this library and the peers that are installed
+	$(BIN)/python benchmarks/peers.py
+
+methods: .venv/tested  ## race all methods of knot insertion; docs/figures_insertion_study.py draws the result
+	$(BIN)/python benchmarks/methods.py
+
+crossovers: .venv/tested  ## measure and print what insert(method="auto") goes by
+	$(BIN)/python benchmarks/crossovers.py
+
+accuracy: .venv/tested  ## errors of all methods of knot insertion against exact results
+	$(BIN)/python benchmarks/accuracy.py
+
+clean:  ## remove .venv and all that was built
 	rm -rf .venv demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 .venv/installed: pyproject.toml

@@ -18,7 +18,7 @@ import knotwork as kw
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.methods.setting import Setting
-from race import keep, short
+from methods import keep, short
 
 DEGREES = range(1, 8)
 INTERVALS = 8

@@ -1,184 +1,165 @@
-"""Contenders of the benchmark: each does the task on plain arrays, as a Python user pays for it, or not at all.
+"""Race Knotwork against the peers that are installed: one run, turns interleaved, medians, ratios to Knotwork.
 
-A contender is a module-level class whose static methods have the names of the tasks in `run.py`; a task that it lacks
-is not run. Peers that are not installed are left out.
+    python benchmarks/peers.py [--quick] [--only WORD]
+
+Cubic curves in 3-D; arrays in, arrays out, unless a line says "value": then a spline that is there already.
+Absolute times are of the machine and the moment; the ratios are what carries over.
 """
 
-import importlib.util
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import time
 
 import numpy as np
 
 import knotwork as kw
+from contenders import Pantr, installed
+from knotwork.arithmetic import kernel
 
 
-class Knotwork:
-    """This library."""
-
-    @staticmethod
-    def insert(t, n, P, new):
-        spline = kw.insert(kw.curve(P, n, t), new)
-        return spline.space.knots, spline.points
-
-    @staticmethod
-    def insert_value(spline, new):
-        """The operation alone, on a spline that is there."""
-        return kw.insert(spline, new)
-
-    @staticmethod
-    def evaluate(t, n, P, u):
-        return kw.curve(P, n, t)(u)
-
-    @staticmethod
-    def derivatives(t, n, P, u):
-        return kw.curve(P, n, t).derivatives(u, 3)
-
-    @staticmethod
-    def bezier(t, n, P):
-        return kw.to_bezier(kw.curve(P, n, t))
-
-    @staticmethod
-    def elevate(t, n, P):
-        return kw.elevate(kw.curve(P, n, t)).points
-
-    @staticmethod
-    def split(t, n, P, u):
-        return [part.points for part in kw.split(kw.curve(P, n, t), u)]
-
-    @staticmethod
-    def surface(t, n, P, new):
-        surface = kw.surface(P, (n, n), (t, t))
-        return kw.insert(kw.insert(surface, new, 0), new, 1).points
-
-    @staticmethod
-    def remove(t, n, P, knots):
-        return kw.remove(kw.curve(P, n, t), knots, tolerance=1e-9).spline.points
-
-    @staticmethod
-    def reduce(t, n, P, tolerance):
-        return kw.reduce(kw.curve(P, n, t), tolerance).spline.points
+def cubic(n, seed=0):
+    """Return knots and points of a clamped cubic with random points."""
+    return kw.SplineSpace.clamped(3, n).knots, np.random.default_rng(seed).random((n, 3))
 
 
-class Scipy:
-    """scipy.interpolate."""
-
-    @staticmethod
-    def insert(t, n, P, new):
-        from scipy.interpolate import BSpline, make_interp_spline
-
-        spline = BSpline(t, P, n)
-        if np.ndim(new) == 0:
-            spline = spline.insert_knot(new)
-            return spline.t, spline.c
-        T = np.sort(np.concatenate([t, new]))
-        nodes = sum(T[j : len(T) - n - 1 + j] for j in range(1, n + 1)) / n
-        return T, make_interp_spline(nodes, spline(nodes), n, t=T).c
-
-    @staticmethod
-    def evaluate(t, n, P, u):
-        from scipy.interpolate import BSpline
-
-        return BSpline(t, P, n)(u)
-
-    @staticmethod
-    def derivatives(t, n, P, u):
-        from scipy.interpolate import BSpline
-
-        spline = BSpline(t, P, n)
-        return [spline(u, nu) for nu in range(4)]
-
-    @staticmethod
-    def bezier(t, n, P):
-        from scipy.interpolate import BSpline, PPoly
-
-        return [PPoly.from_spline(BSpline(t, np.ascontiguousarray(x), n)).c for x in P.T]
+def new_knots(m):
+    """Return m sorted random knots inside the domain."""
+    return np.sort(np.random.default_rng(1).random(m))
 
 
-class Pantr:
-    """pantr: Numba kernels too."""
-
-    @staticmethod
-    def _curve(t, n, P):
-        from pantr.bspline import Bspline, BsplineSpace, BsplineSpace1D
-
-        return Bspline(BsplineSpace([BsplineSpace1D(t, n, snap_knots=False)]), P)
-
-    @staticmethod
-    def insert(t, n, P, new):
-        return Pantr._curve(t, n, P).insert_knots(np.atleast_1d(new)).control_points
-
-    @staticmethod
-    def insert_value(spline, new):
-        return spline.insert_knots(np.atleast_1d(new))
-
-    @staticmethod
-    def evaluate(t, n, P, u):
-        return Pantr._curve(t, n, P).evaluate(u)
-
-    @staticmethod
-    def bezier(t, n, P):
-        return Pantr._curve(t, n, P).to_beziers() if len(P) <= 1000 else None
-
-    @staticmethod
-    def elevate(t, n, P):
-        return Pantr._curve(t, n, P).elevate_degree(1).control_points
-
-    @staticmethod
-    def split(t, n, P, u):
-        return [part.control_points for part in Pantr._curve(t, n, P).split(0, u)]
-
-    @staticmethod
-    def surface(t, n, P, new):
-        from pantr.bspline import Bspline, BsplineSpace, BsplineSpace1D
-
-        space = BsplineSpace1D(t, n, snap_knots=False)
-        return Bspline(BsplineSpace([space, space]), P).insert_knots([new, new]).control_points
-
-    @staticmethod
-    def remove(t, n, P, knots):
-        return Pantr._curve(t, n, P).remove_knots(knots, tol=1e-9).control_points
+def tasks():
+    """Yield (name, goal in microseconds or None, task, arguments, rows for ns per row or None)."""
+    for n, goal in ((10, 6), (1000, 15), (100_000, 150)):
+        t, P = cubic(n)
+        yield f"insert 1 knot, n = {n} (value)", goal, "insert_value", (kw.curve(P, 3, t), 0.5000123), None
+        yield f"insert 1 knot, n = {n}", None, "insert", (t, 3, P, 0.5000123), None
+    for n, m, goal in ((1000, 1000, 30), (100_000, 100_000, 1600), (10, 100_000, 1200)):
+        t, P = cubic(n)
+        yield f"refine {n} + {m}, random", goal, "insert", (t, 3, P, new_knots(m)), n + m
+        yield f"refine {n} + {m}, even", goal, "insert", (t, 3, P, np.linspace(1e-6, 1 - 1e-6, m)), n + m
+    u = np.random.default_rng(2).random(100_000)
+    for n in (1000, 100_000):
+        t, P = cubic(n)
+        yield f"evaluate 1e5 points, n = {n}, sorted", 3300, "evaluate", (t, 3, P, np.sort(u)), 100_000
+        yield f"evaluate 1e5 points, n = {n}, unsorted", 3300, "evaluate", (t, 3, P, u), 100_000
+    t, P = cubic(1000)
+    yield "derivatives 0 … 3 at 1e5 points, n = 1000", 9000, "derivatives", (t, 3, P, np.sort(u)), 100_000
+    for n, goal in ((1000, None), (100_000, 10_000)):
+        t, P = cubic(n)
+        yield f"to Bézier, n = {n}", goal, "bezier", (t, 3, P), None
+    t, P = cubic(1000)
+    yield "elevate, n = 1000", None, "elevate", (t, 3, P), None
+    yield "split, n = 1000", None, "split", (t, 3, P, 0.4321), None
+    refined = kw.insert(kw.curve(P[:500], 3), new_knots(500))
+    yield "remove 500 of 1000", None, "remove", (refined.space.knots, 3, refined.points, new_knots(500)), None
+    x = np.linspace(0, 1, 1000)
+    smooth = np.stack([np.sin(9 * x), np.cos(7 * x) * x, x**2], axis=1)
+    yield "reduce 1000 to 1e-3", None, "reduce", (t, 3, smooth, 1e-3), None
+    for n, m, goal in ((100, 100, 300), (1000, 1000, 50_000)):
+        t, _ = cubic(n)
+        net = np.random.default_rng(3).random((n, n, 3))
+        yield f"bicubic {n}² + {m} + {m}", goal, "surface", (t, 3, net, new_knots(m)), None
 
 
-class Splipy:
-    """splipy."""
-
-    @staticmethod
-    def insert(t, n, P, new):
-        if len(P) + np.size(new) > 1001:  # quadratic
-            return None
-        from splipy import BSplineBasis, Curve
-
-        curve = Curve(BSplineBasis(n + 1, t), P)
-        curve.insert_knot(np.atleast_1d(new))
-        return curve.controlpoints
-
-    @staticmethod
-    def evaluate(t, n, P, u):
-        if len(P) > 1000:
-            return None
-        from splipy import BSplineBasis, Curve
-
-        return Curve(BSplineBasis(n + 1, t), P)(u)
+def timed(run, arguments, calls):
+    """Return the mean time of so many calls in seconds."""
+    start = time.perf_counter()
+    for _ in range(calls):
+        run(*arguments)
+    return (time.perf_counter() - start) / calls
 
 
-class Geomdl:
-    """geomdl (NURBS-Python)."""
+def race(contenders, arguments, quick):
+    """Return the median time of each contender in microseconds, their turns interleaved."""
+    batches = {}
+    for name, run in contenders.items():
+        if run(*arguments) is None:
+            continue
+        once = timed(run, arguments, 1)
+        if once < 1:  # slower ones would only hold up the rest
+            once = timed(run, arguments, 1 + int(0.01 / once))
+            batches[name] = 1 + int(0.005 / once)  # as many warm calls a turn
+    times = {name: [] for name in batches}
+    budget, start, rounds = (0.3 if quick else 2.0), time.perf_counter(), 0
+    while rounds < 5 or (time.perf_counter() - start < budget and rounds < 500):
+        for name, calls in batches.items():
+            run = contenders[name]
+            time.sleep(0.01)  # the threads of the one before come to rest
+            timed(run, arguments, 1 + calls // 2)
+            times[name].append(timed(run, arguments, calls))
+        rounds += 1
+    return {name: 1e6 * statistics.median(found) for name, found in times.items()}
 
-    @staticmethod
-    def insert(t, n, P, new):
-        if np.ndim(new) or len(P) > 1000:
-            return None
-        from geomdl import BSpline, operations
 
-        curve = BSpline.Curve()
-        curve.degree = n
-        curve.ctrlpts = P.tolist()
-        curve.knotvector = t.tolist()
-        return operations.insert_knot(curve, [float(new)], [1]).ctrlpts
+def thread_gains():
+    """Yield large jobs and how many times as long they take on one processor as on all, turns interleaved."""
+    (t, P), (s, _), net = cubic(100_000), cubic(1000), np.random.default_rng(3).random((1000, 1000, 3))
+    curve, surface, few, many = kw.curve(P, 3, t), kw.surface(net, (3, 3), (s, s)), new_knots(1000), new_knots(100_000)
+    jobs = {
+        "refine 100000 + 100000": lambda: kw.insert(curve, many),
+        "refine 10 + 100000": lambda: kw.insert(kw.curve(P[:10]), many),
+        "bicubic 1000² + 1000 + 1000": lambda: kw.insert(kw.insert(surface, few, 0), few, 1),
+    }
+    given = os.environ.get("KNOTWORK_THREADS", "")
+    for name, job in jobs.items():
+        found = {"1": [], given: []}
+        for _ in range(30):
+            for threads, seconds in found.items():
+                os.environ["KNOTWORK_THREADS"] = threads
+                job()
+                seconds.append(timed(job, (), 1))
+        yield name, statistics.median(found["1"]) / statistics.median(found[given])
+    os.environ["KNOTWORK_THREADS"] = given
 
 
-PEERS = {"scipy": Scipy, "pantr": Pantr, "splipy": Splipy, "geomdl": Geomdl}
+def import_ratio():
+    """Return the time of `import knotwork` over that of `import numpy`, medians of fresh processes in turn."""
+    found = {"numpy": [], "knotwork": []}
+    for _ in range(7):
+        for name, seconds in found.items():
+            code = f"import time; a = time.perf_counter(); import {name}; print(time.perf_counter() - a)"
+            seconds.append(float(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout))
+    return statistics.median(found["knotwork"]) / statistics.median(found["numpy"])
 
 
-def installed() -> dict[str, type]:
-    """Return Knotwork and the peers that can be imported, by name."""
-    return {"knotwork": Knotwork} | {k: v for k, v in PEERS.items() if importlib.util.find_spec(k)}
+def readable(microseconds):
+    """Return a time in µs or ms."""
+    return f"{microseconds:.1f} µs" if microseconds < 1000 else f"{microseconds / 1000:.2f} ms"
+
+
+def main():
+    """Run the race and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="short runs, noisier medians")
+    parser.add_argument("--only", default="", help="only tasks whose name holds this word")
+    options = parser.parse_args()
+    kernel.mode = "always"
+    contenders = installed()
+    others = [name for name in contenders if name != "knotwork"]
+    print(f"{os.cpu_count()} processors; numpy {np.__version__}; peers: {', '.join(others) or 'none installed'}\n")
+    print(f"{'task':46}{'goal':>10}{'knotwork':>11}{'per row':>10}   times as long as knotwork")
+    for name, goal, task, arguments, rows in tasks():
+        if options.only not in name:
+            continue
+        runs = {peer: getattr(methods, task) for peer, methods in contenders.items() if hasattr(methods, task)}
+        if task == "insert_value" and "pantr" in runs:
+            spline = arguments[0]
+            native = Pantr._curve(spline.space.knots, 3, spline.points)
+            runs["pantr"] = lambda _, u, native=native: native.insert_knots([u])
+        found = race(runs, arguments, options.quick)
+        ours = found.pop("knotwork")
+        per_row = f"{1000 * ours / rows:.1f} ns" if rows else ""
+        ratios = "  ".join(f"{peer} {time / ours:.1f}" for peer, time in sorted(found.items(), key=lambda x: x[1]))
+        mark = "" if goal is None else readable(goal)
+        print(f"{name:46}{mark:>10}{readable(ours):>11}{per_row:>10}   {ratios}", flush=True)
+    if not options.only:
+        gains = ", ".join(f"{name}: {gain:.2f}" for name, gain in thread_gains())
+        print(f"\none processor takes so many times as long as all ({gains})")
+        print(f"\nimport knotwork takes {import_ratio():.2f} times as long as import numpy (goal: 1.3)")
+
+
+if __name__ == "__main__":
+    main()

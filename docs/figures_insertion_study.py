@@ -1,6 +1,6 @@
 """Make the pictures of insertion/counts.md, errors.md and speed.md: python docs/figures_insertion_study.py.
 
-Counts are made anew; errors and times are those that `make accuracy` and `make race` left in benchmarks/.
+Counts are made anew; errors and times are those that `make accuracy` and `make methods` left in benchmarks/.
 """
 
 import json
@@ -125,7 +125,7 @@ def errors():
 
 def speed():
     """Draw the times of all kernels as ratios to that of the merge."""
-    told = [line for line in json.loads((MEASURED / "race.json").read_text()) if line["dim"] == 3]
+    told = [line for line in json.loads((MEASURED / "methods.json").read_text()) if line["dim"] == 3]
     sizes = [(16, 1000), (1000, 1000), (20_000, 20_000)]
     names = [name for name, method in METHODS.items() if name != "merge" and not method.name.endswith("-rewritten")]
     fig, axes = plt.subplots(1, len(sizes), figsize=(12, 8.2), layout="constrained", sharey=True)

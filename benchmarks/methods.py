@@ -1,7 +1,6 @@
 """Race all methods of knot insertion and the peers that are installed: one run, turns interleaved, ratios of medians.
 
-    python benchmarks/race.py [--quick] [--only WORD]     the race; the numbers go to benchmarks/race.json
-    python benchmarks/race.py --crossovers                where Boehm's algorithm overtakes the merge, by degree
+    python benchmarks/methods.py [--quick] [--only WORD]     the numbers go to benchmarks/methods.json
 
 Curves, arrays in, arrays out, all kernels compiled before the clock runs. "whole" is `insert` with this method, checks
 and bookkeeping included (which interval a new knot lies in, which vertices change); "kernel" leaves them out, as the
@@ -17,16 +16,14 @@ from pathlib import Path
 import numpy as np
 
 import knotwork as kw
+from contenders import installed
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.merge import refined
 from knotwork.insertion.methods.setting import Setting
-from knotwork.insertion.refinement import refine
-from peers import installed
-from run import readable, timed
+from peers import readable, timed
 
 HERE = Path(__file__).parent
-TABLE = HERE.parent / "src" / "knotwork" / "insertion" / "crossovers.py"
 #: (degree, old points, new knots, dimension, spread)
 GRID = [
     *[(n, 16, 10, 3, "spread") for n in (2, 3, 5)],
@@ -87,66 +84,14 @@ def short(x):
     return float(f"{x:.3g}")
 
 
-SHARES = (0.25, 0.5, 0.75, 0.99)
-MANY = (100, 300, 1000, 3000, 10_000, 30_000)
-WINS = 0.87  # the time of another method over that of the merge from which it is taken
-
-
-def ratio(n, share, m, rounds):
-    """Return the time of Boehm's algorithm over that of the merge, in 1-D or 3-D; that share of the knots is new."""
-    found = []
-    for d in (1, 3):
-        old = np.linspace(0, 1, max(1, round(m / share) - m) + 2)
-        rng = np.random.default_rng(m)
-        curve = kw.curve(rng.random((len(old) + n - 1, d)), n, np.concatenate([[0] * n, old, [1] * n]))
-        new = np.sort(rng.random(m))
-        racers = {
-            "merge": lambda c=curve, x=new: refine(c, 0, c.space.new_knots(x)),
-            "boehm": lambda c=curve, x=new: METHODS["boehm"].run(c, x),
-        }
-        times = race(racers, rounds)
-        found.append(times["boehm"] / times["merge"])
-    return max(found)
-
-
-def crossovers(rounds):
-    """Print where Boehm's algorithm overtakes the merge, and keep it where `insert` finds it."""
-    kept = {}
-    for n in range(1, 10):
-        rows = []
-        for share in SHARES:
-            ratios = [ratio(n, share, m, rounds) for m in MANY]
-            print(
-                f"degree {n}, {share:4.0%} new: "
-                + "  ".join(f"{m}: {x:.2f}" for m, x in zip(MANY, ratios, strict=True)),
-                flush=True,
-            )
-            wins = [all(x < WINS for x in ratios[i:]) for i in range(len(MANY))]
-            if any(wins) and (not rows or MANY[wins.index(True)] < rows[-1][1]):
-                rows.append((share, MANY[wins.index(True)]))
-        if rows:
-            kept[n] = tuple(rows)
-    TABLE.write_text(
-        '"""Where Boehm\'s algorithm overtakes the merge: written by benchmarks/race.py --crossovers."""\n\n'
-        "#: degree: (share of new knots from the first to the last new one, least number of new knots), …\n"
-        "CROSSOVERS: dict[int, tuple[tuple[float, int], ...]] = {\n"
-        + "".join(f"    {n}: {rows!r},\n" for n, rows in kept.items())
-        + "}\n"
-    )
-
-
 def main():
     """Run and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="few rounds, noisier medians")
     parser.add_argument("--only", default="", help="only cases whose line holds this word")
-    parser.add_argument("--crossovers", action="store_true", help="measure what `method='auto'` goes by")
     options = parser.parse_args()
     kernel.mode = "always"
     rounds = 3 if options.quick else 11
-    if options.crossovers:
-        crossovers(rounds)
-        return
     start, told = time.perf_counter(), []
     for case in GRID:
         n, points, m, d, spread = case
@@ -169,7 +114,7 @@ def main():
             shown = best if kind == "peer" else [*best[:6], *best[-2:]]
             print(f"  {kind:7}" + "  ".join(f"{name} {x:.2f}" for x, name in shown))
     if not options.only:
-        keep("race.json", told)
+        keep("methods.json", told)
     print(f"\n{time.perf_counter() - start:.0f} s")
 
 
