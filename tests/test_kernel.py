@@ -271,10 +271,11 @@ def test_large_work_is_compiled(mode, loaded):
 
 def test_an_unknown_mode_is_an_error():
     code = """
+        import knotwork as kw
+        import knotwork.errors
         try:
-            import knotwork as kw
             kw.curve([0, 1, 2, 3])(0.5)
-        except ValueError as error:
+        except kw.errors.ParameterError as error:
             print(error)
     """
     message = run(code, KNOTWORK_JIT="sometimes")

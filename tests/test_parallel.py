@@ -9,7 +9,7 @@ import pytest
 
 import knotwork as kw
 from knotwork.arithmetic import parallel
-from knotwork.errors import KnotError
+from knotwork.errors import KnotError, ParameterError
 
 RNG = np.random.default_rng(0)
 CURVE = kw.curve(RNG.standard_normal((90_000, 3)))
@@ -125,3 +125,9 @@ def test_the_environment_says_how_many(given, count, monkeypatch):
     assert parallel.processors() == count
     monkeypatch.delenv("KNOTWORK_THREADS")
     assert parallel.processors() >= 1
+
+
+def test_an_unknown_number_of_threads_is_an_error(monkeypatch):
+    monkeypatch.setenv("KNOTWORK_THREADS", "many")
+    with pytest.raises(ParameterError, match="KNOTWORK_THREADS is 'many'; expected a whole number"):
+        parallel.processors()

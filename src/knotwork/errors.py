@@ -30,4 +30,4 @@ class FileError(KnotworkError):
 
 
 class MissingExtraError(ImportError):
-    """An optional library is not installed; the message says which extra brings it."""
+    """An optional library is not installed; the message says how to install it."""

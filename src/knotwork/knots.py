@@ -156,3 +156,12 @@ def turned(knots: Array, turn: Any, start: Any, end: Any) -> Array:
     before = start - ((end - knots) + (-turn - 1) * (end - start))
     moved: Array = np.where(turn == 0, knots, np.where(turn > 0, after, before))
     return moved
+
+
+def dividing(breaks: Array, parts: int) -> Array:
+    """Return the knots that divide every interval between breaks into so many equal parts.
+
+    >>> dividing(np.array([0.0, 1, 3]), 2).tolist()
+    [0.5, 2.0]
+    """
+    return np.ravel(breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(1, parts) / parts)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, whole
-from knotwork.errors import MissingExtraError, ParameterError, PointError
+from knotwork.arithmetic.arrays import Array, in_floats, whole
+from knotwork.errors import KnotError, KnotworkError, MissingExtraError, ParameterError, PointError
 from knotwork.knots import multiplicities
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -24,6 +24,8 @@ INK, NET, KNOT, PALE = "#1f3a5f", "#a3a8ae", "#c4502f", "#f2c9a1"
 
 #: points on all curves of a picture together, about, and on one axis of a surface
 CURVE_POINTS, SURFACE_POINTS = 20_000, 80
+#: the largest number in a picture: matplotlib multiplies up to three coordinates
+LARGEST = 1e100
 
 
 def plot(
@@ -69,7 +71,7 @@ def plot(
     MissingExtraError
         If matplotlib is not installed.
     PointError
-        If the points have more than three dimensions.
+        If the points have more than three dimensions, or are too large to draw.
     ParameterError
         If a spline has more than two parameters, or curves of the plane and of space are mixed.
 
@@ -82,7 +84,7 @@ def plot(
     >>> len(ax.lines)
     8
     """
-    over, under = [_in_floats(s) for s in _listed(spline)], [_in_floats(s) for s in _listed(before)]
+    over, under = [_drawable(s) for s in _listed(spline)], [_drawable(s) for s in _listed(before)]
     if not over:
         raise ParameterError("no spline given; expected at least one")
     if samples is not None:
@@ -253,12 +255,20 @@ def _listed(spline: Spline | Sequence[Spline] | None) -> list[Spline]:
     return splines
 
 
-def _in_floats(spline: Spline) -> Spline:
-    """Return exact splines rounded to floats, which is all that a picture shows."""
-    if spline.coefficients.dtype != object:
-        return spline
-    spaces = [SplineSpace(s.degree, s.knots.astype(np.float64), periodic=s.periodic) for s in spline.spaces]
-    return Spline(spaces, spline.coefficients.astype(np.float64), spline.rational)
+def _drawable(spline: Spline) -> Spline:
+    """Return a spline in floats, which is all that a picture shows, or say that its numbers are too large for one."""
+    if spline.coefficients.dtype == object:
+        knots = [in_floats(space.knots, "knots", KnotError) for space in spline.spaces]
+        try:
+            spaces = [SplineSpace(s.degree, t, periodic=s.periodic) for s, t in zip(spline.spaces, knots, strict=True)]
+        except KnotworkError as exc:
+            raise KnotError(f"knots rounded to float64, which a picture takes, do not make a space: {exc}") from exc
+        spline = Spline(spaces, in_floats(spline.coefficients, "points", PointError), spline.rational)
+    for numbers in (spline.points, *(space.knots for space in spline.spaces)):
+        most = np.abs(numbers).max()
+        if not most <= LARGEST:
+            raise PointError(f"a number of size {most:.3g} given; expected at most {LARGEST:g} in a picture")
+    return spline
 
 
 def _spatial(splines: list[Spline]) -> bool:
@@ -281,7 +291,7 @@ def _axes(ax: Axes | None, spatial: bool) -> Axes:
     try:
         from matplotlib import pyplot
     except ImportError as exc:
-        raise MissingExtraError("pictures need matplotlib: pip install 'knotwork[plot]'") from exc
+        raise MissingExtraError("pictures need matplotlib: pip install matplotlib") from exc
     if ax is None:
         ax = pyplot.figure(layout="constrained").add_subplot(projection="3d" if spatial else None)
     elif (ax.name == "3d") != spatial:

@@ -84,12 +84,17 @@ def in_arithmetic_of(like: Array, x: Array, what: str, error: type[KnotworkError
     """Return real numbers exact where `like` is exact, float64 otherwise."""
     if like.dtype == object:
         return x if x.dtype == object else exact(x, what, error)
-    if x.dtype == object:
-        try:
-            x = x.astype(np.float64)
-        except OverflowError:
-            raise error(f"{what}: a number too large for float64 was given; expected finite numbers") from None
-    return x
+    return in_floats(x, what, error)
+
+
+def in_floats(x: Array, what: str, error: type[KnotworkError]) -> Array:
+    """Return exact real numbers rounded to float64, others as they are."""
+    if x.dtype != object:
+        return x
+    try:
+        return x.astype(np.float64)
+    except (OverflowError, TypeError):
+        raise error(f"{what}: a number that float64 cannot hold; expected real ones up to 1.8e308 in size") from None
 
 
 def exact(array: Array, what: str, error: type[KnotworkError]) -> Array:

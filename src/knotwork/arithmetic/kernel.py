@@ -24,6 +24,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from knotwork.errors import ParameterError
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -53,7 +55,7 @@ _spent = 0.0
 def _mode_from_environment() -> str:
     mode = os.environ.get("KNOTWORK_JIT", "auto")
     if mode not in MODES:
-        raise ValueError(f"KNOTWORK_JIT is {mode!r}; expected one of {', '.join(MODES)}")
+        raise ParameterError(f"KNOTWORK_JIT is {mode!r}; expected one of {', '.join(MODES)}")
     return mode
 
 

@@ -8,6 +8,8 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from knotwork.errors import ParameterError
+
 if TYPE_CHECKING:
     from concurrent.futures import ThreadPoolExecutor
 
@@ -19,7 +21,10 @@ def processors() -> int:
     """Return how many processors this process may use; ``KNOTWORK_THREADS`` overrides it."""
     given = os.environ.get("KNOTWORK_THREADS")
     if given:
-        return max(1, int(given))
+        try:
+            return max(1, int(given))
+        except ValueError:
+            raise ParameterError(f"KNOTWORK_THREADS is {given!r}; expected a whole number") from None
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # not on this system

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
 from collections.abc import Sequence
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, localcontext
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -44,7 +46,7 @@ def continuity(space: SplineSpace) -> int | None:
 
 
 def facts(spline: Spline) -> dict[str, Any]:
-    """Return what there is to know about a spline, ready for JSON; lists have one entry a parameter."""
+    """Return what there is to know about a spline, lists have one entry per parameter."""
     spread = [repetitions(space) for space in spline.spaces]
     real = spline.coefficients.dtype.kind != "c"
     return {
@@ -58,8 +60,8 @@ def facts(spline: Spline) -> dict[str, Any]:
         "pieces": [len(space.breaks) - 1 for space in spline.spaces],
         "knots": [{"inside": {str(m): count for m, count in inside.items()}, "ends": ends} for inside, ends in spread],
         "continuity": [continuity(space) for space in spline.spaces],
-        "domain": [[float(x) for x in space.domain] for space in spline.spaces],
-        "bounds": [[float(x) for x in corner] for corner in spline.bounds] if real else None,
+        "domain": [list(space.domain) for space in spline.spaces],
+        "bounds": spline.bounds.tolist() if real else None,
     }
 
 
@@ -118,7 +120,7 @@ def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
         name,
         degrees[0] if len(degrees) == 1 else f"{degrees[0]}–{degrees[-1]}",
         *(f"{n:,}" for n in counts),
-        f"{max(bounds):.3g}",
+        shown(max(bounds), 3),
         duration(sum(r["seconds"] for r in rows)),
     ]
 
@@ -126,12 +128,12 @@ def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
 def conditions(rows: Sequence[dict[str, Any]]) -> str:
     """Return the table of condition numbers: of each basis, and of inserting knots if any were."""
     header = ["#", "degree", "points", "basis"]
-    cells = [[str(r["index"]), str(r["degree"]), f"{r['points']:,}", f"{r['basis']:.6g}"] for r in rows]
+    cells = [[str(r["index"]), str(r["degree"]), f"{r['points']:,}", shown(r["basis"])] for r in rows]
     if rows and "insertion" in rows[0]:
         header += ["insertion", "one knot ≤", "relative error ≤"]
         for line, r in zip(cells, rows, strict=True):
-            error = "–" if r["error"] is None else f"{r['error']:.2g}"
-            line += [f"{r['insertion']:.6g}", f"{r['worst']:.6g}", error]
+            error = "–" if r["error"] is None else shown(r["error"], 2)
+            line += [shown(r["insertion"]), shown(r["worst"]), error]
     return table(">" * len(header), header, cells)
 
 
@@ -147,9 +149,44 @@ def table(align: str, header: Sequence[str], rows: Sequence[Sequence[str]], tota
     return "\n".join(lines)
 
 
-def interval(ends: Sequence[float]) -> str:
+def as_json(told: Any) -> str:
+    """Return something as JSON: exact numbers as floats, and as text like "-1/3" where float64 does not reach."""
+    return json.dumps(told, indent=2, ensure_ascii=False, default=lambda x: str(x) if _rounded(x) is None else float(x))
+
+
+def shown(x: Any, digits: int = 6) -> str:
+    """Return a number with so many digits, be it beyond float64."""
+    if _rounded(x) is not None:
+        return f"{float(x):.{digits}g}"
+    with localcontext(Context(prec=digits, Emax=MAX_EMAX, Emin=MIN_EMIN)):
+        return f"{(Decimal(x.numerator) / Decimal(x.denominator)).normalize():g}"
+
+
+def upward(x: Any) -> Any:
+    """Return a bound as the least float that is no smaller, or as it is if there is none."""
+    if _rounded(x) is None:
+        return x
+    near = float(x)
+    return near if near >= x else math.nextafter(near, math.inf)
+
+
+def _rounded(x: Any) -> float | None:
+    """Return the float nearest to a number; None if there is none or it is 0 and the number is not."""
+    try:
+        near = float(x)
+    except OverflowError:
+        return None
+    return near if near or not x else None
+
+
+def interval(ends: Sequence[Any]) -> str:
     """Return an interval as a text."""
-    return f"[{ends[0]:.6g}, {ends[1]:.6g}]"
+    return f"[{shown(ends[0])}, {shown(ends[1])}]"
+
+
+def error_of(bound: float) -> str:
+    """Return what there is to say about the error of what was written."""
+    return f", with an error of at most {bound:.3g}" if bound else ""
 
 
 def duration(seconds: float) -> str:

@@ -6,14 +6,17 @@ import math
 import sys
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from knotwork.errors import KnotworkError, MissingExtraError
+
+if TYPE_CHECKING:
+    from knotwork.spline import Spline
 
 
 class Failure(click.ClickException):
@@ -77,12 +80,34 @@ class Progress:
             click.echo("\r\033[K", err=True, nl=False)
 
 
+class Size(click.FloatRange):
+    """A number in a range; NaN, which compares as false with both ends, is not in it."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail(f"{value} is not in the range {self.min} to {self.max}", param, ctx)
+        return number
+
+
 @dataclass(frozen=True)
 class Tolerance:
     """A length in the units of the points, or a part of their extent."""
 
     value: float
     relative: bool
+
+    def of(self, splines: Sequence[Spline]) -> float:
+        """Return the length, if need be as a part of the extent of all splines together."""
+        if not self.relative:
+            return self.value
+        from knotwork.geometry.boxes import extent
+
+        try:
+            return self.value * float(extent(splines))
+        except OverflowError:
+            raise Failure("the extent is beyond float64, so is a percentage of it; expected a length") from None
 
 
 def tolerance(text: str) -> Tolerance:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import KnotError
 from knotwork.evaluation import Basis
 from knotwork.knots import nodes
@@ -69,8 +69,8 @@ def chebyshev(space: SplineSpace) -> Chebyshev:
     if space.periodic:
         raise KnotError(f"{space!r} is periodic; a Chebyshev spline takes a space with ends")
     (a, b), n, N = space.domain, space.degree, space.dimension
-    t = space.knots.astype(np.float64)
-    inside = np.clip(t, a, b).astype(np.float64)
+    t = in_floats(space.knots, "knots", KnotError)
+    inside = np.clip(t, float(a), float(b))
     if (inside[:N] == inside[n + 1 :]).any():
         i = int(np.argmax(inside[:N] == inside[n + 1 :]))
         raise KnotError(f"basis function {i} vanishes on the domain [{a}, {b}]; no Chebyshev spline bounds it")

@@ -8,8 +8,9 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, numbers, real_numbers
 from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.insertion.face import insert
 from knotwork.insertion.merge import refined
-from knotwork.knots import distinct, new_knots, sorted_knots
+from knotwork.knots import distinct, multiplicities, new_knots, sorted_knots
 from knotwork.linear.banded import along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -94,6 +95,24 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     split_axes = nets.reshape(*counts, *nets.shape[k:])
     order = [*range(0, 2 * k, 2), *range(1, 2 * k, 2), *range(2 * k, split_axes.ndim)]
     return np.ascontiguousarray(split_axes.transpose(order)), breaks[0] if k == 1 else tuple(breaks)
+
+
+def in_bezier_form(spline: Spline) -> Spline:
+    """Return the spline with each knot inside repeated as often as the degree; what is periodic stays so.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> in_bezier_form(kw.curve([0, 1, 3, 4], degree=2, knots=[0, 0, 0, 1, 2, 2, 2])).space.knots.tolist()
+    [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.0]
+    """
+    if not any(space.periodic for space in spline.spaces):
+        spline = clamp(spline)
+    for axis, space in enumerate(spline.spaces):
+        inside = space.breaks[:-1] if space.periodic else space.breaks[1:-1]
+        missing = np.maximum(space.degree - multiplicities(space.knots, inside), 0)
+        spline = insert(spline, np.repeat(inside, missing), axis)
+    return spline
 
 
 def from_bezier(nets: Any, breaks: Any, rational: bool = False) -> Spline:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import FileError
 from knotwork.geometry.cubics import cubics
 from knotwork.insertion import to_bezier
@@ -61,10 +61,7 @@ def _pieces(spline: Spline, place: str) -> Array:
     if spline.space.degree == 0:
         raise FileError(f"{place} has degree 0; .svg holds curves of degree 1 and up")
     nets, breaks = to_bezier(spline)
-    try:
-        nets = nets.astype(np.float64)
-    except (OverflowError, TypeError) as exc:
-        raise FileError(f"{place} has numbers that do not fit in float64: {exc}") from None
+    nets = in_floats(nets, place, FileError).astype(np.float64)
     if not spline.rational:
         nets = np.concatenate([nets, np.ones((*nets.shape[:-1], 1))], axis=-1)
     # where the curve has no jump, pieces meet; what rounding says otherwise is not drawn as a gap

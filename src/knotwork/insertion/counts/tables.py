@@ -5,7 +5,9 @@ The problem is the one that the text assumes: all new knots in one interval of o
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import astuple, dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -61,7 +63,13 @@ class Table:
     lines: tuple[Line, ...]
 
 
-def tables(degree: int = 3, dim: int = 3, knots: int = 20, across: int | None = None) -> list[Table]:
+def tables(
+    degree: int = 3,
+    dim: int = 3,
+    knots: int = 20,
+    across: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> list[Table]:
     """Return Tables 4.1 to 4.6 for one size of the problem; those of cubics in space are 4.2, 4.4 and 4.6.
 
     Parameters
@@ -72,6 +80,8 @@ def tables(degree: int = 3, dim: int = 3, knots: int = 20, across: int | None = 
         How many are inserted; in surfaces, in direction u.
     across : int, optional
         How many are inserted in direction v of surfaces; by default as many as in u.
+    progress : callable, optional
+        Called with the part of the lines that is done, from 0 to 1.
 
     Examples
     --------
@@ -86,16 +96,22 @@ def tables(degree: int = 3, dim: int = 3, knots: int = 20, across: int | None = 
     cubic = n == d == 3
     what = f"degree {n} in {d}-D, {m} knots"
     names = [f"Tables 4.{i} and 4.{i + 1}" if cubic else f"Table 4.{i}" for i in (1, 3, 5)]
-    point = POINT[:-1] if cubic else POINT
-    return [
-        Table(names[0], f"point methods for curves of {what}", tuple(_curve(n, d, m, name) for name in _forms(point))),
-        Table(names[1], f"matrix methods for curves of {what}", tuple(_curve(n, d, m, name) for name in MATRIX)),
-        Table(
-            names[2],
-            f"surfaces of {what} in u and {v} in v",
-            tuple(_surface(n, d, (m, v), name, first) for name in SURFACE for first in (0, 1)),
-        ),
+    titles = [
+        f"point methods for curves of {what}",
+        f"matrix methods for curves of {what}",
+        f"surfaces of {what} in u and {v} in v",
     ]
+    jobs = [
+        *[(0, partial(_curve, n, d, m, name)) for name in _forms(POINT[:-1] if cubic else POINT)],
+        *[(1, partial(_curve, n, d, m, name)) for name in MATRIX],
+        *[(2, partial(_surface, n, d, (m, v), name, first)) for name in SURFACE for first in (0, 1)],
+    ]
+    lines: list[list[Line]] = [[], [], []]
+    for done, (table, line) in enumerate(jobs, 1):
+        lines[table].append(line())
+        if progress:
+            progress(done / len(jobs))
+    return [Table(name, title, tuple(made)) for name, title, made in zip(names, titles, lines, strict=True)]
 
 
 def _size(value: int, what: str) -> int:

@@ -17,7 +17,7 @@ import knotwork as kw
 from knotwork.cli import main, report, terminal
 from knotwork.files import read, write
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 WAVE = np.stack([np.linspace(0, 10, 400), np.sin(np.linspace(0, 10, 400))], axis=1)
 
 
@@ -356,9 +356,9 @@ def test_plot_refuses_to_replace_the_splines(run, curve):
     assert read("curve.json") == [curve]
 
 
-def test_plot_without_matplotlib_names_the_extra(run, curve, monkeypatch):
+def test_plot_without_matplotlib_says_what_to_install(run, curve, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert "knotwork[plot]" in run("plot", "curve.json", "-o", "p.png", code=1).stderr
+    assert "pip install matplotlib\n" in run("plot", "curve.json", "-o", "p.png", code=1).stderr
 
 
 # ---- what goes wrong ------------------------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +9,6 @@ from click.testing import CliRunner
 
 import knotwork as kw
 from knotwork.cli import main
-
-ROOT = Path(__file__).parent.parent
 
 
 @pytest.fixture

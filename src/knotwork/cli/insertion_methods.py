@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from knotwork.cli import report
-from knotwork.cli.commands import as_json as json_option
-from knotwork.cli.commands import main, print_json
+from knotwork.cli.program import as_json as json_option
+from knotwork.cli.program import main, print_json
+from knotwork.cli.terminal import Progress
 
 if TYPE_CHECKING:
     from knotwork.insertion.counts.tables import Line, Table
@@ -59,7 +60,11 @@ def count(degree: int, dim: int, knots: int, across: int | None, as_json: bool) 
     """
     from knotwork.insertion.counts.tables import tables
 
-    found = tables(degree, dim, knots, across)
+    progress = Progress("counting", 1)
+    try:
+        found = tables(degree, dim, knots, across, progress.update)
+    finally:
+        progress.close()
     if as_json:
         print_json({"degree": degree, "dim": dim, "knots": knots, "tables": [asdict(table) for table in found]})
     else:
