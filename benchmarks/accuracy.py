@@ -17,7 +17,7 @@ import numpy as np
 import knotwork as kw
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
-from knotwork.insertion.methods.setting import Setting
+from knotwork.insertion.methods.problem import Problem
 from methods import keep, short
 
 DEGREES = range(1, 8)
@@ -53,7 +53,7 @@ SPACINGS = {f.__name__.replace("_", " "): f for f in (even, random, ratios, clus
 
 
 def problem(rng, n, spacing):
-    """Return the arguments of a `Setting`: clamped old knots, up to 40 new ones over all intervals or in one."""
+    """Return the arguments of a `Problem`: clamped old knots, up to 40 new ones over all intervals or in one."""
     breaks = np.unique(np.concatenate([[0], np.cumsum(spacing(rng))]))
     t = np.concatenate([[breaks[0]] * n, breaks, [breaks[-1]] * n])
     new = np.zeros(0)
@@ -69,11 +69,11 @@ def errors(t, new, P, n):
     curve = kw.Spline(kw.SplineSpace(n, t), P)
     exactly = kw.Spline(curve.space.in_exact_arithmetic(), P.astype(object))
     true = kw.insert(exactly, new.astype(object)).coefficients[:, 0].tolist()
-    setting = Setting(t, new, P, n)
-    sizes = [abs(P[max(j - n, 0) : j + 1]).max() for j in setting.columns.tolist()]
+    problem = Problem(t, new, P, n)
+    sizes = [abs(P[max(j - n, 0) : j + 1]).max() for j in problem.columns.tolist()]
     found = {}
     for name, method in METHODS.items():
-        points = method.points(setting)[:, 0].tolist()
+        points = method.points(problem)[:, 0].tolist()
         off = [abs(float(Fraction(x) - y)) if math.isfinite(x) else math.inf for x, y in zip(points, true, strict=True)]
         found[name] = 2.0**53 * max(x / size for x, size in zip(off, sizes, strict=True))
     return found

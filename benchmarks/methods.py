@@ -20,7 +20,7 @@ from contenders import installed
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
 from knotwork.insertion.merge import refined
-from knotwork.insertion.methods.setting import Setting
+from knotwork.insertion.methods.problem import Problem
 from peers import readable, timed
 
 HERE = Path(__file__).parent
@@ -46,7 +46,7 @@ def problem(n, points, m, d, spread):
 
 def contenders(t, W, P, n):
     """Return what is raced, by name and kind: `insert`, every method whole and its kernel alone, the peers."""
-    ready = Setting(t, W, P, n)
+    ready = Problem(t, W, P, n)
     racers = {("insert", "whole"): lambda: kw.insert(kw.curve(P, n, t), W).coefficients}
     for name, method in METHODS.items():
         racers[name, "whole"] = lambda name=name: kw.insert(kw.curve(P, n, t), W, method=name).coefficients

@@ -22,7 +22,7 @@ from knotwork import insertion, progressive
 from knotwork.arithmetic import kernel as kernels
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.conversion.oslo import conversion_matrix, converted
-from knotwork.insertion.methods import forms, steps
+from knotwork.insertion.methods import forms, perspectives
 
 SOURCE = Path(kw.__file__).parent.parent
 
@@ -213,8 +213,11 @@ def test_plain_and_compiled_agree_on_methods_of_insertion(both, dtype):
 
 
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone
-TEMPLATES = {steps.step, steps.by_intervals, steps.vertex, steps.by_vertices, steps.segment, steps.by_segments,
-             forms.insert_right_knots}  # fmt: skip
+TEMPLATES = {
+    *(getattr(perspectives, name) for name in ("step", "vertex", "segment")),
+    *(getattr(perspectives, name) for name in ("by_intervals", "by_vertices", "by_segments")),
+    forms.insert_right_knots,
+}
 
 
 def test_every_kernel_is_tried(both):

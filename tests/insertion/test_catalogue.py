@@ -228,7 +228,7 @@ def test_every_method_refuses_bad_input_before_any_work(name, spline, knots, axi
     def work(*args):
         raise AssertionError("work was begun")
 
-    monkeypatch.setattr("knotwork.insertion.methods.catalogue.setting_of", work)
+    monkeypatch.setattr("knotwork.insertion.methods.catalogue.problem_of", work)
     with pytest.raises(error, match=says):
         kw.insert(spline, knots, axis, method=name)
     with pytest.raises(error, match=says):

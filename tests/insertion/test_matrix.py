@@ -16,24 +16,24 @@ import strategies as kinds
 from knotwork import Spline, SplineSpace
 from knotwork.insertion import METHODS
 from knotwork.insertion.methods import matrix
-from knotwork.insertion.methods.setting import Setting
+from knotwork.insertion.methods.problem import Problem
 
 F = Fraction
 MATRIX = [name for name, method in METHODS.items() if method.form == "matrix"]
 
 
-def dense(setting, E):
+def dense(problem, E):
     """Return the whole matrix from its rows of n + 1 entries."""
-    n, N = setting.n, len(setting.P)
+    n, N = problem.n, len(problem.P)
     full = np.array([F(0)] * (len(E) * N), object).reshape(len(E), N)
-    for i, q in enumerate(setting.columns.tolist()):
+    for i, q in enumerate(problem.columns.tolist()):
         full[i, q - n : q + 1] = E[i]
     return full
 
 
-def setting_of(space, new):
-    """Return the setting of a curve of one coordinate."""
-    return Setting(space.knots, space.new_knots(new), kinds.control_points((space.dimension, 1), 3), space.degree)
+def problem_of(space, new):
+    """Return the problem of a curve of one coordinate."""
+    return Problem(space.knots, space.new_knots(new), kinds.control_points((space.dimension, 1), 3), space.degree)
 
 
 @settings(max_examples=80)
@@ -41,36 +41,34 @@ def setting_of(space, new):
 def test_rows_columns_and_morkens_identity_find_the_same_matrix(drawn):
     """It holds the blossoms of the basis, each row at the n + 1 columns of one interval."""
     space, new = drawn
-    setting = setting_of(space, new)
+    problem = problem_of(space, new)
     rows, defined = oracle.matrix(space, space.with_knots(new))
     found = [
-        setting.by_rows(matrix.rows),
-        setting.by_columns(matrix.columns),
-        setting.by_rows(matrix.morken),
+        problem.by_rows(matrix.rows),
+        problem.by_columns(matrix.columns),
+        problem.by_rows(matrix.morken),
     ]
     for E in found:
-        assert (dense(setting, E)[defined] == rows[defined]).all()
+        assert (dense(problem, E)[defined] == rows[defined]).all()
         assert np.array_equal(E, found[0])
         assert (E.sum(axis=1) == 1).all()
 
 
 @given(kinds.spaces_and_knots(exact=True, periodic=False, degrees=st.integers(1, 5)))
-def test_a_setting_orders_the_knots_and_knows_the_old_vertices(drawn):
+def test_a_problem_orders_the_knots_and_knows_the_old_vertices(drawn):
     space, new = drawn
-    setting, n = setting_of(space, new), space.degree
+    problem, n = problem_of(space, new), space.degree
     refined = space.with_knots(new)
-    assert setting.T.tolist() == refined.knots.tolist()
-    assert sum(setting.gap) == len(new)
-    rows, _ = oracle.matrix(space, refined)
-    for i, j in enumerate(setting.old.tolist()):
+    assert problem.T.tolist() == refined.knots.tolist()
+    assert sum(problem.gap) == len(new)
+    for i, j in enumerate(problem.old.tolist()):
         if j >= 0:  # an old vertex: its arguments are those of vertex j
-            assert setting.T[i + 1 : i + n + 1].tolist() == setting.U[j + 1 : j + n + 1].tolist()
-    assert setting.changed == len(rows) - np.count_nonzero(setting.old >= 0)
-    kept = [j for j in setting.old.tolist() if j >= 0]
+            assert problem.T[i + 1 : i + n + 1].tolist() == problem.U[j + 1 : j + n + 1].tolist()
+    kept = [j for j in problem.old.tolist() if j >= 0]
     assert kept == sorted(set(kept))
     a, b = space.domain
-    for q in setting.where:
-        assert a <= setting.U[q] < setting.U[q + 1] <= b
+    for q in problem.where:
+        assert a <= problem.U[q] < problem.U[q + 1] <= b
 
 
 @pytest.mark.parametrize("name", MATRIX)

@@ -16,7 +16,7 @@ from knotwork.diagrams.symbols import Expression, label, names
 from knotwork.diagrams.symbols import knots as knots_of
 from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.methods.catalogue import METHODS, Method, method_named
-from knotwork.insertion.methods.setting import Setting
+from knotwork.insertion.methods.problem import Problem
 from knotwork.progressive.homogeneous import DELTA
 
 #: how to read the two-point kernels of the factored form: the right point of a combination has a δ
@@ -165,7 +165,7 @@ def scheme_of(method: Method, refined: Sequence[str], n: int) -> tuple[Scheme, l
     U = np.array([Ordered("t", -1), *old, Ordered("t", len(refined))], object)
     P = given(knots_of(old), n)
     with recording([*placed, DELTA], **(FACTORED if method.form == "factored" else {})) as values:
-        out = method.points(Setting(U, np.array(new, object), P, n))
+        out = method.points(Problem(U, np.array(new, object), P, n))
     points = P[:, 0].tolist()
     return Scheme(points, values), points, out[:, 0].tolist()
 

@@ -18,10 +18,14 @@ from knotwork.diagrams.progressive_figures import Figure, numbered
 from knotwork.diagrams.recording import Value, given, recording
 from knotwork.diagrams.spacing import evenly_spaced
 from knotwork.diagrams.symbols import Knot, knots, label, names
-from knotwork.insertion.methods import factored, forms, oslo, sablonniere
+from knotwork.insertion.methods import sablonniere
 from knotwork.insertion.methods.catalogue import METHODS
+from knotwork.insertion.methods.factored import rounds as step_4_rounds
+from knotwork.insertion.methods.forms import division_triangle
 from knotwork.insertion.methods.goldman import two_triangles
+from knotwork.insertion.methods.perspectives import Room
 from knotwork.progressive.homogeneous import DELTA
+from knotwork.schemes import factored, triangle
 
 #: points have one coordinate, which is a value
 _ONE = (0,)
@@ -39,11 +43,11 @@ def vertex(x: list[str]) -> Diagram:
 
 def vertex_over_delta(x: list[str]) -> Diagram:
     """Draw the same over t₁ t₂ t₃ δ δ δ."""
-    return _picture(*_triangle(x, [*names("t", 1, _N), *["δ"] * _N], oslo.triangle.variant(combine=forms.factored)))
+    return _picture(*_triangle(x, [*names("t", 1, _N), *["δ"] * _N], triangle.variant(combine=factored)))
 
 
 def _triangle(
-    x: list[str], base: list[str] | None = None, kernel: Kernel = oslo.triangle
+    x: list[str], base: list[str] | None = None, kernel: Kernel = triangle
 ) -> tuple[Array, list[Value], Array]:
     t = base or names("t", 1, 2 * _N)
     P, S = given(knots(t), _N), np.empty((1, 1), object)
@@ -69,9 +73,12 @@ def segment(kernel: Kernel, n: int = _N) -> tuple[Array, list[Value], Array]:
     """Run a step of a segment-oriented method for the n + 1 vertices of a segment between u₁ … uₙ and uₙ₊₁ … u₂ₙ."""
     t, u = names("t", 1, 2 * n), names("u", 1, 2 * n)
     P, S = given(knots(t), n), np.empty((n + 1, 1), object)
-    A, C, stack = np.empty((n + 2, n + 1, 1), object), np.empty((n + 1, 1), object), np.empty((n + 2, 2), np.intp)
+    A = np.empty((n + 2, n + 1, 1), object)
+    A[0] = P
+    nothing = np.empty(0, object)
+    room = Room(n, P.copy(), A, P.copy(), np.empty((n + 2, 2), np.intp), nothing, nothing, _ONE)
     with recording([*t[:n], *u, *t[n:]]) as values:
-        kernel(S, P.copy(), symbols(t[:n]), symbols(t[n:]), symbols(u), n + 1, n, A, C, stack, _ONE)
+        kernel(S, symbols(t[:n]), symbols(t[n:]), symbols(u), n + 1, room)
     return P, values, S
 
 
@@ -81,7 +88,7 @@ def division(n: int = _N) -> Diagram:
     P = given(knots(t), n)
     F = P.copy()
     with recording([*t, DELTA], **FACTORED) as values:
-        forms.division_triangle(F, symbols(t[:n]), symbols(t[n:]), n, _ONE)
+        division_triangle(F, symbols(t[:n]), symbols(t[n:]), n, _ONE)
     return _picture(P, values, F)
 
 
@@ -90,7 +97,7 @@ def rounds(s: list[str], shown: int | None = None) -> Diagram:
     count = len(s) - _N
     P, Z = given(knots([*s[:_N], *["δ"] * _N]), _N), np.empty((count + 1, 1), object)
     with recording([*s, DELTA], **FACTORED) as values:
-        factored.rounds(Z, 0, 1, P.copy(), symbols(s), _N, count, _ONE)
+        step_4_rounds(Z, 0, 1, P.copy(), symbols(s), _N, count, _ONE)
     return _picture(P, values[:shown], Z[1:])
 
 
@@ -210,7 +217,7 @@ FIGURES = {
     "4.1": Figure("Boehm's algorithm: one knot.", lambda: diagram("boehm", new=1)),
     "4.2": Figure("The Oslo algorithm: one vertex.", lambda: vertex(_U[:3])),
     "4.3": Figure(
-        "Sablonnière's algorithm: all vertices of a segment.", lambda: _picture(*segment(sablonniere.tetrahedron))
+        "Sablonnière's algorithm: all vertices of a segment.", lambda: _picture(*segment(sablonniere.whole_tetrahedron))
     ),
     "4.4": Figure(
         "Where the Oslo algorithm wastes work: old knots t₄ and t₅ are put in.", lambda: vertex(["u₁", "t₄", "t₅"])

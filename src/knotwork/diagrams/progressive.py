@@ -85,6 +85,8 @@ class Scheme:
         How much higher the degree n of the triangles is than that of what they are drawn for.
     shared : bool
         Whether what is computed twice is drawn once.
+    face : bool
+        Whether the lateral face of the tetrahedron, values with none of the arguments u_1 … u_n, is drawn as a whole.
     downward : bool
         Whether it is read from the apex down, for those basis functions that `run` returns.
     """
@@ -96,6 +98,7 @@ class Scheme:
     partial: bool = False
     raised: int = 0
     shared: bool = False
+    face: bool = False
     downward: bool = False
 
 
@@ -125,11 +128,11 @@ SCHEMES = {
     "basis": Scheme("The basis functions, from the top down", basis, _T, _AT_T, downward=True),
     "boehm": Scheme("Boehm's knot insertion", edges, _T, lambda n: ["u"], partial=True),
     "boehm-change": Scheme(f"{_CHANGE}, one knot at a time: Boehm", procedures.boehm, _T, _U),
-    "oslo": Scheme(f"{_CHANGE}: Goldman's version of the Oslo algorithm", procedures.oslo, _T, _U),
-    "oslo-original": Scheme(f"{_CHANGE}: the Oslo algorithm", procedures.oslo_original, _T, _U),
-    "sablonniere": Scheme(f"{_CHANGE}: Sablonnière's tetrahedron", procedures.sablonniere, _T, _U),
-    "sablonniere-optimised": Scheme(
-        f"{_CHANGE}: what is needed of Sablonnière's tetrahedron", procedures.sablonniere_optimised, _T, _U
+    "goldman": Scheme(f"{_CHANGE}: Goldman's version of the Oslo algorithm", procedures.goldman, _T, _U),
+    "oslo": Scheme(f"{_CHANGE}: the Oslo algorithm", procedures.oslo, _T, _U),
+    "sablonniere": Scheme(f"{_CHANGE}: Sablonnière's tetrahedron", procedures.sablonniere, _T, _U, face=True),
+    "sablonniere-recursive": Scheme(
+        f"{_CHANGE}: what is needed of Sablonnière's tetrahedron", procedures.sablonniere_recursive, _T, _U
     ),
     "derivative": Scheme("The first derivative", apex, _T, lambda n: ["δ", *["t"] * (n - 1)]),
     "boehm-derivative": Scheme("All derivatives at a: Boehm's algorithm", boehm_derivative, _T, _each("a")),
@@ -160,7 +163,7 @@ def diagram(
     ----------
     procedure : str
         "de casteljau", "de boor", "blossom", "boehm" (knot insertion), "derivative", "boehm-derivative", "matching";
-        the changes of basis "boehm-change", "oslo", "oslo-original", "sablonniere", "sablonniere-optimised"; top down
+        the changes of basis "boehm-change", "goldman", "oslo", "sablonniere", "sablonniere-recursive"; top down
         "basis" and "integration"; by basis "monomial", "power", "newton-dual", "pascal", "differencing".
     degree : int
         At least 1.
@@ -199,6 +202,9 @@ def diagram(
     P = given(t, n)
     with recording([*t[:n], *u, DELTA, *t[n:]], scheme.shared) as values:
         results = {*scheme.run(P, t, u)[:, 0].tolist()}
+    if scheme.face:
+        base = {knot(x) for x in u[:n]}
+        values.sort(key=lambda value: not base.isdisjoint(value.arguments))
     layout = Layout(P[:, 0].tolist(), values)
     if scheme.downward:
         return picture(

@@ -110,6 +110,7 @@ def tetrahedron(n: int) -> Diagram:
         Q = sablonniere(P, t, u)[:, 0].tolist()
     place = {value: (6.0 * k, 0.0) for k, value in enumerate(P[:, 0])}
     base = {tuple(knot) for knot in u[:n]}
+    values.sort(key=lambda value: not base.isdisjoint(value.arguments))  # the lateral face, then what stands on it
     for value in values:
         (x0, y0), (x1, _) = (place[parent] for parent in value.parents)
         lateral = base.isdisjoint(value.arguments)
@@ -159,7 +160,7 @@ FIGURES = {
     "2.1": Figure("The de Boor algorithm for a cubic.", lambda: diagram("de boor")),
     "2.2": Figure("The Cox–de Boor–Mansfield recurrence for the cubic basis functions.", lambda: diagram("basis")),
     "2.3": Figure("The blossom of a cubic at any arguments.", lambda: diagram("blossom")),
-    "2.4": Figure("Goldman's version of the Oslo algorithm: two triangles.", lambda: diagram("oslo")),
+    "2.4": Figure("Goldman's version of the Oslo algorithm: two triangles.", lambda: diagram("goldman")),
     "2.5a": Figure(
         "Sablonnière's tetrahedron from above: up the lateral face (red), then parallel to the base.",
         lambda: tetrahedron(3),

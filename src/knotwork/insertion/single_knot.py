@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.methods.forms import combine
 from knotwork.knots import last_at_most
+from knotwork.schemes import combine
 
 
 @kernel

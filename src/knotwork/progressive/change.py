@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -16,14 +17,16 @@ from knotwork.progressive.homogeneous import beside, broken_at, pair
 from knotwork.progressive.procedures import right_edge, triangle
 from knotwork.progressive.sequence import Sequence
 
-#: what changes a basis, by the name of its author
+#: what changes a basis: the same algorithm has the same name as in `knotwork.insertion.METHODS`
 METHODS: dict[str, Callable[[Array, Array, Array], Array]] = {
     "boehm": procedures.boehm,
+    "goldman": procedures.goldman,
     "oslo": procedures.oslo,
-    "oslo-original": procedures.oslo_original,
     "sablonniere": procedures.sablonniere,
-    "sablonniere-optimised": procedures.sablonniere_optimised,
+    "sablonniere-recursive": procedures.sablonniere_recursive,
 }
+#: names that methods had before
+_FORMER = {"oslo-original": "oslo", "sablonniere-optimised": "sablonniere-recursive"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +107,13 @@ def change_basis(curve: Curve, sequence: Any, method: str = "auto") -> Curve:
     ----------
     curve : Curve
     sequence : Sequence, or what it takes
-    method : {"auto", "boehm", "oslo", "oslo-original", "sablonniere", "sablonniere-optimised"}
-        "boehm" inserts the knots one at a time, 2n² combinations; "oslo" is Goldman's version with two triangles,
-        n(n + 1); both go through sequences that mix old and new knots, and fail if one of them is not progressive.
-        The others compute all points from the given ones: "oslo-original" with n + 1 triangles, n(n + 1)²/2,
-        "sablonniere" with a tetrahedron, n(n + 1)(n + 5)/6, "sablonniere-optimised" with the part of it that is needed.
-        "auto" takes Oslo, with whichever half first, where it goes, and the optimised Sablonnière elsewhere.
+    method : {"auto", "boehm", "goldman", "oslo", "sablonniere", "sablonniere-recursive"}
+        "boehm" inserts the knots one at a time, 2n² combinations; "goldman" is Goldman's version of the Oslo algorithm
+        with two triangles, n(n + 1); both go through sequences that mix old and new knots, and fail if one of them is
+        not progressive. The others compute all points from the given ones: "oslo" with n + 1 triangles, n(n + 1)²/2,
+        "sablonniere" with a tetrahedron, n(n + 1)(n + 5)/6, "sablonniere-recursive" with the part of it that is needed.
+        "auto" takes Goldman's, with whichever half first, where it goes, and the recursive Sablonnière elsewhere.
+        The names "oslo-original" and "sablonniere-optimised", for "oslo" and "sablonniere-recursive", are deprecated.
 
     Raises
     ------
@@ -125,8 +129,12 @@ def change_basis(curve: Curve, sequence: Any, method: str = "auto") -> Curve:
     target = sequence if isinstance(sequence, Sequence) else Sequence(sequence)
     if target.degree != curve.degree:
         raise KnotError(f"a sequence of degree {target.degree} given; the curve has degree {curve.degree}")
-    if method != "auto" and (not isinstance(method, str) or method not in METHODS):
+    if method != "auto" and (not isinstance(method, str) or method not in {**METHODS, **_FORMER}):
         raise ParameterError(f"method {method!r} given; expected 'auto' or one of {', '.join(METHODS)}")
+    if method in _FORMER:
+        now = _FORMER[method]
+        warnings.warn(f"method {method!r} is now called {now!r}", DeprecationWarning, stacklevel=2)
+        method = now
     P, t, u = beside(curve.points, curve.knots, target.homogeneous)
     change = _safest(t, u) if method == "auto" else METHODS[method]
     return curve.over(Sequence.trusted(u), np.ascontiguousarray(change(P, t, u)))
@@ -136,7 +144,7 @@ def _safest(t: Array, u: Array) -> Callable[[Array, Array, Array], Array]:
     """Return the cheapest method that goes from t to u without a sequence that is not progressive."""
     n = len(t) // 2
     if broken_at(np.concatenate([t[:n], u[n:]])) is None:
-        return procedures.oslo
+        return procedures.goldman
     if broken_at(np.concatenate([u[:n], t[n:]])) is None:
-        return procedures.oslo_mirrored
-    return procedures.sablonniere_optimised
+        return procedures.goldman_mirrored
+    return procedures.sablonniere_recursive

@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, numbers, require_finite
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.progressive import scheme
+from knotwork.progressive import kernels
 from knotwork.progressive.homogeneous import (
     DELTA,
     affine,
@@ -194,7 +194,7 @@ class Curve(Frozen):
             return self.over(Sequence.trusted(t), points).derivatives(a)
         P, t, A, delta = beside(*self._newton_dual_form, A, pairs([DELTA] * n, "δ"))
         out = np.empty((n + 1, len(A), P.shape[1]), P.dtype)
-        scheme.over(t, scheme.edge)(out, P, t, A, delta, np.empty_like(P), extent(P.shape[1]))
+        kernels.over(t, kernels.edge)(out, P, t, A, delta, np.empty_like(P), extent(P.shape[1]))
         return out.reshape(n + 1, *shape, *self.control.shape[1:])
 
     @property
@@ -241,7 +241,7 @@ class Curve(Frozen):
             raise KnotError(f"way {way!r} divides by the weight of knot {written(t[blocked[0]])}; the other way may go")
         P, t = beside(self.points, t)
         Q = np.empty((n + 2, P.shape[1]), P.dtype)
-        scheme.over(t, scheme.integrate)(Q, P, t, start, extent(P.shape[1]))
+        kernels.over(t, kernels.integrate)(Q, P, t, start, extent(P.shape[1]))
         return self.over(Sequence.trusted(t), Q)
 
     def _extended(self, longer: Array) -> Array:

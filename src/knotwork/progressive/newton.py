@@ -12,7 +12,8 @@ from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.progressive.bases import flat_nodes
 from knotwork.progressive.curve import Curve
 from knotwork.progressive.homogeneous import affine, alike, beside
-from knotwork.progressive.scheme import over, quotient
+from knotwork.progressive.kernels import over
+from knotwork.schemes import quotient
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""The procedures on arrays: each allocates what its kernel of `scheme` needs and calls it, in one arithmetic.
+"""The procedures on arrays: each allocates what its kernel needs and calls it, in one arithmetic.
 
 Points are (n + 1, d), knots t and u are (2n, 2) homogeneous pairs; what is given is known to fit.
 """
@@ -10,7 +10,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
-from knotwork.progressive import scheme
+from knotwork.progressive import kernels
 from knotwork.progressive.homogeneous import beside, crossed, written
 
 
@@ -23,7 +23,7 @@ def blossoms(points: Array, t: Array, arguments: Array) -> Array:
     """Return the blossom (m, d) at rows of arguments (m, n, 2)."""
     P, t, U = beside(points, t, arguments)
     out = np.empty((len(U), P.shape[1]), P.dtype)
-    scheme.over(t, scheme.blossoms)(out, P, t, U, np.empty_like(P), extent(P.shape[1]))
+    kernels.over(t, kernels.blossoms)(out, P, t, U, np.empty_like(P), extent(P.shape[1]))
     return out
 
 
@@ -32,7 +32,7 @@ def triangle(points: Array, t: Array, arguments: Array) -> Array:
     P, t, U = beside(points, t, arguments)
     T = np.empty((len(U) + 1, *P.shape), P.dtype)
     T[0] = P
-    scheme.over(t, scheme.triangle)(T, t, U, extent(P.shape[1]))
+    kernels.over(t, kernels.triangle)(T, t, U, extent(P.shape[1]))
     return T
 
 
@@ -61,30 +61,28 @@ def boehm(points: Array, t: Array, u: Array) -> Array:
         _require_distinct("boehm", a[:n], b[n - k : 2 * n - k])
     for k in range(n):
         _require_distinct("boehm", a[k : n + k], b[:n])
-    T = np.empty((2 * n + 1, *P.shape), P.dtype)
-    T[0] = P
-    scheme.over(t, scheme.boehm)(T, a, b, extent(P.shape[1]))
-    new: Array = T[2 * n]
-    return new
+    Z = np.concatenate([P, np.empty((n, P.shape[1]), P.dtype)])
+    kernels.over(t, kernels.boehm)(Z, a, b, extent(P.shape[1]))
+    return Z[n:]
 
 
-def oslo(points: Array, t: Array, u: Array) -> Array:
+def goldman(points: Array, t: Array, u: Array) -> Array:
     """Go over t_1 … t_n u_{n+1} … u_2n: Goldman's two triangles, n(n + 1) combinations (§2.2.4)."""
     n = len(t) // 2
     _, t, u = beside(points, t, u)
     between = np.concatenate([t[:n], u[n:]])
     for j in range(n):
-        _require_distinct("oslo", between[j:n], between[n + j : n + j + 1])
+        _require_distinct("goldman", between[j:n], between[n + j : n + j + 1])
     first = triangle(points, t, u[n:])
     return right_edge(triangle(left_edge(first), between, u[n - 1 :: -1] if n else u))
 
 
-def oslo_mirrored(points: Array, t: Array, u: Array) -> Array:
+def goldman_mirrored(points: Array, t: Array, u: Array) -> Array:
     """Go over u_1 … u_n t_{n+1} … t_2n instead: Goldman's two triangles, the other one first."""
-    return oslo(points[::-1], t[::-1], u[::-1])[::-1]
+    return goldman(points[::-1], t[::-1], u[::-1])[::-1]
 
 
-def oslo_original(points: Array, t: Array, u: Array) -> Array:
+def oslo(points: Array, t: Array, u: Array) -> Array:
     """Run the blossoming algorithm for each new point: n + 1 triangles, n(n + 1)²/2 combinations (§2.2.4)."""
     n = len(t) // 2
     if not n:
@@ -97,24 +95,20 @@ def sablonniere(points: Array, t: Array, u: Array) -> Array:
     """Compute one tetrahedron: n(n + 1)(n + 5)/6 combinations, and no sequence on the way (§2.2.5)."""
     P, t, u = beside(points, t, u)
     n = len(t) // 2
-    T = np.empty((n + 1, *P.shape), P.dtype)
-    T[0] = P
-    Q = np.empty_like(P)
-    lower = np.ascontiguousarray(u[:n][::-1])
-    scheme.over(t, scheme.sablonniere)(Q, T, t, u[n:], lower, np.empty_like(P), extent(P.shape[1]))
+    R, Q = np.stack([P, P]), np.empty_like(P)
+    kernels.over(t, kernels.tetrahedron)(Q, R, t, t[n:], u, n, n, extent(P.shape[1]))
     return Q
 
 
-def sablonniere_optimised(points: Array, t: Array, u: Array) -> Array:
-    """Compute those rows of the tetrahedron alone that serve the most new points (§2.2.5)."""
+def sablonniere_recursive(points: Array, t: Array, u: Array) -> Array:
+    """Compute those rows of the tetrahedron alone that serve the most new points, by halves of halves (§2.2.5)."""
     P, t, u = beside(points, t, u)
     n = len(t) // 2
-    depth = n + 2
-    R = np.empty((depth, *P.shape), P.dtype)
+    rows = n.bit_length() + 2
+    R = np.empty((rows, *P.shape), P.dtype)
     R[0] = P
     Q = np.empty_like(P)
-    first, last = np.empty(depth, np.intp), np.empty(depth, np.intp)
-    scheme.over(t, scheme.sablonniere_optimised)(Q, t, u, R, first, last, extent(P.shape[1]))
+    kernels.over(t, kernels.halves)(Q, R, t, t[n:], u, n + 1, np.empty((rows, 2), np.intp), extent(P.shape[1]))
     return Q
 
 

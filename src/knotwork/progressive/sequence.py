@@ -9,7 +9,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, numbers, require_finite, whole
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.progressive import scheme
+from knotwork.progressive import kernels
 from knotwork.progressive.homogeneous import affine, alike, beside, broken_at, crossed, pairs, require_together, written
 from knotwork.progressive.procedures import blossoms, repeated
 from knotwork.value import Frozen
@@ -130,7 +130,7 @@ class Sequence(Frozen):
         n = self.degree
         if way == "down":
             b = np.empty((len(u), n + 1), u.dtype)
-            scheme.over(knots, scheme.cox_de_boor)(b, knots, u)
+            kernels.over(knots, kernels.cox_de_boor)(b, knots, u)
         else:
             b = blossoms(np.eye(n + 1, dtype=u.dtype) * (u[0, 1] if len(u) else 1), knots, repeated(u, n))
         return b.reshape(*shape, n + 1)
@@ -145,7 +145,7 @@ class Sequence(Frozen):
         u, shape = affine(t, "parameters")
         knots, u = alike(self.homogeneous, u)
         psi = np.empty((len(u), self.degree + 1), u.dtype)
-        scheme.polya(psi, knots, u)
+        kernels.polya(psi, knots, u)
         return psi.reshape(*shape, self.degree + 1)
 
     def dual_functional(self, k: int, derivatives: Any, tau: Any) -> Any:
@@ -173,7 +173,7 @@ class Sequence(Frozen):
             raise ParameterError(f"tau of shape {shape} given; expected one number")
         p, t, x = beside(p, self.homogeneous, x)
         e = np.empty(n + 1, t.dtype)
-        scheme.expansion(e, t[k : k + n], x[0, 0])
+        kernels.expansion(e, t[k : k + n], x[0, 0])
         weight = x[0, 1]  # (-1)^(n-r) (n-r)! / n!, here for r = n
         sign = -1 if n % 2 else 1
         total = p[0] - p[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from knotwork.arithmetic.counting import Counting, Counts, counting
-from knotwork.insertion.methods.catalogue import method_named, setting_of
+from knotwork.insertion.methods.catalogue import method_named, problem_of
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -35,7 +35,7 @@ def count(name: str, spline: Spline, knots: Any, axis: int = 0) -> Counts:
     _, new = space.refinement(knots)
     counted = SplineSpace.trusted(space.degree, Counting.array(space.knots), space.periodic)
     points = spline.with_axis(axis, counted, Counting.array(spline.coefficients))
-    setting, _ = setting_of(points, axis, Counting.array(new))
+    problem, _ = problem_of(points, axis, Counting.array(new))
     with counting() as counts:
-        method.points(setting)
+        method.points(problem)
     return counts

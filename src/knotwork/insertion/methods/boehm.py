@@ -1,28 +1,27 @@
-"""Boehm's algorithm: one knot, one combination a changed point (§4.5)."""
+"""Boehm's algorithm: one knot at a time, one combination per changed point (§4.5)."""
 
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.methods.forms import combine, copy, copy_points, level
-from knotwork.insertion.methods.steps import by_intervals
+from knotwork.insertion.methods.perspectives import by_intervals
+from knotwork.schemes import between, copy, copy_points, level
 
 
 @kernel
-def one_at_a_time(Z, t, b, n, m, A, C, stack, K, D):
+def one_at_a_time(Z, t, b, m, room):
     """Insert t_{n+1} … t_{n+m}: each is one level of the triangle over the n knots at its left and b (Fig. 4.1).
 
     In the factored form, over t_{k+1} … t_{k+n}, δⁿ, this is step 4 of factored knot insertion (§3.2).
     """
+    n = room.n
     for k in range(m):
-        copy(Z[k + n + 1], Z[k + n], D)
-        for j in range(n, 0, -1):
-            combine(Z[k + j], Z[k + j - 1], Z[k + j], t[k + j - 1], b[j - 1], t[k + n], D)
+        between(Z[k:], t[k:], b, n, t[k + n], room.D)
 
 
 @kernel
-def one_value_at_a_time(Z, t, b, n, m, A, C, stack, K, D):
+def one_value_at_a_time(Z, t, b, m, room):
     """The same, but r equal knots by one triangle of r levels: its left edge, top row and right edge (§2.2.3)."""
-    F = A[0]
+    n, F, D = room.n, room.A[0], room.D
     k = 0
     while k < m:
         r = 1

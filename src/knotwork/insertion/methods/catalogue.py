@@ -17,7 +17,7 @@ from knotwork.arithmetic.kernel import Kernel
 from knotwork.errors import ParameterError
 from knotwork.insertion.methods import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
 from knotwork.insertion.methods.predictions import Formula, Size
-from knotwork.insertion.methods.setting import Setting, in_real_coordinates
+from knotwork.insertion.methods.problem import Problem, in_real_coordinates
 from knotwork.insertion.refinement import around, missing_knots, refine_to
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
@@ -39,7 +39,7 @@ class Method:
         Where the text has it; empty if it goes beyond.
     summary : str
     points : callable
-        Takes a `Setting`, returns the new points.
+        Takes a `Problem`, returns the new points.
     costs : callable
         Takes a `Size`, returns the `Counts` that the text derives.
     bound : bool
@@ -51,7 +51,7 @@ class Method:
     form: str
     section: str
     summary: str
-    points: Callable[[Setting], Array]
+    points: Callable[[Problem], Array]
     costs: Callable[[Size], Counts]
     bound: bool = False
 
@@ -63,22 +63,22 @@ class Method:
     def refine(self, spline: Spline, axis: int, new: Array) -> Spline:
         """Return the spline with sorted knots inside the domain in addition (trusted)."""
         refined = spline.spaces[axis].refined_by(new)
-        setting, part = setting_of(spline, axis, new, refined.knots)
+        problem, part = problem_of(spline, axis, new, refined.knots)
         A, _, B = as_blocks(spline.coefficients, axis).shape
-        points = self.points(setting)[part].view(spline.coefficients.dtype)
+        points = self.points(problem)[part].view(spline.coefficients.dtype)
         out = np.ascontiguousarray(points.reshape(-1, A, B).transpose(1, 0, 2))
         return spline.with_axis(axis, refined, along(out, spline.coefficients, axis))
 
     def matrix(self, space: SplineSpace, refined: SplineSpace) -> Banded:
         """Return the insertion matrix as this method finds it: from n + 1 colours of unit points; one of each a row."""
         new, n = missing_knots(space, refined), space.degree
-        setting, part = setting_of(Spline.trusted((space,), np.arange(space.dimension)), 0, new)
-        owner = setting.P[:, 0]
+        problem, part = problem_of(Spline.trusted((space,), np.arange(space.dimension)), 0, new)
+        owner = problem.P[:, 0]
         colours = np.zeros((len(owner), n + 1), int)
         colours[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
-        setting = Setting(setting.U, setting.W, colours * setting.one, n)
-        columns = (setting.columns[part] - n)[:, None] + np.arange(n + 1)
-        entries = np.take_along_axis(self.points(setting)[part], columns % (n + 1), axis=1)
+        problem = Problem(problem.U, problem.W, colours * problem.one, n)
+        columns = (problem.columns[part] - n)[:, None] + np.arange(n + 1)
+        entries = np.take_along_axis(self.points(problem)[part], columns % (n + 1), axis=1)
         first = owner[columns[:, 0]]
         return Banded.packed(first, np.full(len(first), n), entries, space.dimension, wraps=space.periodic)
 
@@ -93,7 +93,7 @@ class Method:
         return self.costs(Size(n, m, r, n + 1 if p is None else p, d, intervals))
 
 
-def setting_of(spline: Spline, axis: int, new: Array, merged: Array | None = None) -> tuple[Setting, slice]:
+def problem_of(spline: Spline, axis: int, new: Array, merged: Array | None = None) -> tuple[Problem, slice]:
     """Return what a method works on to insert sorted knots on one axis, and which of its points are asked for.
 
     A periodic space is unrolled.
@@ -102,12 +102,12 @@ def setting_of(spline: Spline, axis: int, new: Array, merged: Array | None = Non
     n = space.degree
     P = in_real_coordinates(blocks.transpose(1, 0, 2).reshape(blocks.shape[1], -1))
     if not space.periodic:
-        return Setting(space.knots, new, P, n, merged), slice(None)
+        return Problem(space.knots, new, P, n, merged), slice(None)
     U, W, _, first, left = around(space, new)
     N = len(U) - n - 1
     lo, hi = np.searchsorted(W, U[n], "left"), np.searchsorted(W, U[N], "right")
     start = first - int(lo)
-    return Setting(U, W[lo:hi], P[space.wrapped(-left, N)], n), slice(start, start + len(P) + len(new))
+    return Problem(U, W[lo:hi], P[space.wrapped(-left, N)], n), slice(start, start + len(P) + len(new))
 
 
 def _in_three_forms(
@@ -116,14 +116,14 @@ def _in_three_forms(
     section: str,
     summary: str,
     kernel: Kernel,
-    drive: Callable[[Setting, Kernel], Array],
+    drive: Callable[[Problem, Kernel], Array],
     combinations: Formula,
     bound: bool = False,
     over_delta: Formula | None = None,
 ) -> list[Method]:
     """Return a point method in its three forms; over δⁿ a knot-oriented one has the last rounds of §3.2 in addition."""
     if over_delta is None:
-        over_delta = predictions.with_right_knots(combinations) if drive is Setting.by_intervals else combinations
+        over_delta = predictions.with_right_knots(combinations) if drive is Problem.by_intervals else combinations
     costs = {
         "standard": predictions.standard(combinations),
         "rewritten": predictions.rewritten(combinations),
@@ -142,8 +142,8 @@ def _factored(
 ) -> Method:
     costs = costs or predictions.factored(combinations)
 
-    def points(s: Setting) -> Array:
-        return s.by_intervals_with_knots(kernel)
+    def points(s: Problem) -> Array:
+        return s.by_intervals(kernel)
 
     return Method(name, "factored", "factored", section, summary, points, costs, bound)
 
@@ -152,7 +152,7 @@ def _matrix(name: str, family: str, section: str, summary: str, points: Any, cos
     return Method(name, family, "matrix", section, summary, points, costs, bound)
 
 
-def _merge(s: Setting) -> Array:
+def _merge(s: Problem) -> Array:
     space = SplineSpace.trusted(s.n, s.U)
     spline = Spline.trusted((space,), s.P)
     return refine_to(spline, 0, SplineSpace.trusted(s.n, s.T), s.W).coefficients
@@ -165,52 +165,52 @@ METHODS: dict[str, Method] = {
     for method in [
         *_in_three_forms(
             "boehm", "boehm", "§4.5", "one knot at a time, n combinations each",
-            boehm.boehm, Setting.by_intervals, predictions.boehm,
+            boehm.boehm, Problem.by_intervals, predictions.boehm,
         ),
         *_in_three_forms(
             "boehm-multiple", "boehm", "§2.2.3", "one value at a time, equal knots by one triangle",
-            boehm.blocked, Setting.by_intervals, predictions.boehm, bound=True,
+            boehm.blocked, Problem.by_intervals, predictions.boehm, bound=True,
         ),
         *_in_three_forms(
             "oslo", "oslo", "§4.6", "Oslo II: one triangle a new vertex",
-            oslo.oslo, Setting.by_vertices, predictions.oslo,
+            oslo.oslo, Problem.by_vertices, predictions.oslo,
         ),
         *_in_three_forms(
             "oslo-improved", "oslo", "§4.9", "one triangle a new vertex, with a level for each new knot alone",
-            oslo.improved, Setting.by_vertices, predictions.oslo, bound=True,
+            oslo.improved, Problem.by_vertices, predictions.oslo, bound=True,
         ),
         *_in_three_forms(
             "goldman", "goldman", "§4.9", "two triangles for n + 1 knots",
-            goldman.goldman, Setting.by_intervals, predictions.boehm,
+            goldman.goldman, Problem.by_intervals, predictions.boehm,
         ),
         *_in_three_forms(
             "goldman-modified", "goldman", "§4.9", "two triangles for n + 1 vertices",
-            goldman.modified, Setting.by_segments, predictions.modified_goldman,
+            goldman.modified, Problem.by_segments, predictions.modified_goldman,
         ),
         *_in_three_forms(
             "goldman-modified-improved", "goldman", "§4.9", "the same, where old knots stay as they are",
-            goldman.modified_improved, Setting.by_segments, predictions.boehm,
+            goldman.modified_improved, Problem.by_segments, predictions.boehm,
             over_delta=predictions.with_all_right_knots(predictions.boehm),
         ),
         *_in_three_forms(
             "sablonniere", "sablonniere", "§4.7", "a tetrahedron for n + 1 vertices",
-            sablonniere.sablonniere, Setting.by_segments, predictions.sablonniere,
+            sablonniere.sablonniere, Problem.by_segments, predictions.sablonniere,
         ),
         *_in_three_forms(
             "sablonniere-improved", "sablonniere", "§4.9", "a tetrahedron for n + 1 vertices, where old knots stay",
-            sablonniere.improved, Setting.by_segments, predictions.sablonniere, bound=True,
+            sablonniere.improved, Problem.by_segments, predictions.sablonniere, bound=True,
         ),
         *_in_three_forms(
             "sablonniere-recursive", "sablonniere", "§4.9", "a tetrahedron for n + 1 vertices, by halves",
-            sablonniere.recursive_halves, Setting.by_segments, predictions.sablonniere_recursive,
+            sablonniere.recursive_halves, Problem.by_segments, predictions.sablonniere_recursive,
         ),
         *_in_three_forms(
             "goldman-sablonniere", "sablonniere", "§4.9", "two tetrahedra for 3n + 1 knots",
-            sablonniere.goldman_sablonniere, Setting.by_intervals, predictions.goldman_sablonniere,
+            sablonniere.goldman_sablonniere, Problem.by_intervals, predictions.goldman_sablonniere,
         ),
         *_in_three_forms(
             "goldman-sablonniere-recursive", "sablonniere", "§4.9", "two tetrahedra for 3n + 1 knots, by halves",
-            sablonniere.goldman_recursive, Setting.by_intervals, predictions.goldman_sablonniere_recursive,
+            sablonniere.goldman_recursive, Problem.by_intervals, predictions.goldman_sablonniere_recursive,
         ),
         _factored("factored", "§3.2", "step 4: the new knots ascending", factored.step_4, predictions.step_4),
         _factored("factored-nested", "§3.2", "step 4': nested multiplication", factored.nested, predictions.step_4),
@@ -243,11 +243,11 @@ METHODS: dict[str, Method] = {
         ),
         _matrix(
             "goldman-column", "goldman", "§4.17", "two triangles for all columns of n + 1 knots",
-            lambda s: s.by_intervals_with_weights(matrix.goldman_columns), predictions.goldman_columns,
+            lambda s: s.by_intervals(matrix.goldman_columns), predictions.goldman_columns,
         ),
         _matrix(
             "goldman-row", "goldman", "§4.17", "a triangle top down for each new vertex of n + 1 knots",
-            lambda s: s.by_intervals_with_weights(matrix.goldman_rows), predictions.goldman_rows,
+            lambda s: s.by_intervals(matrix.goldman_rows), predictions.goldman_rows,
         ),
         _matrix(
             "morken", "morken", "§4.11", "each entry from three neighbours (Eq. 4.8)",

@@ -13,11 +13,11 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, real_numbers, whole
 from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError, ParameterError
-from knotwork.insertion.methods.forms import copy, copy_points, divide, division_triangle, factored
-from knotwork.insertion.methods.oslo import triangle
-from knotwork.insertion.methods.setting import in_real_coordinates
-from knotwork.insertion.methods.steps import by_intervals, by_vertices
+from knotwork.insertion.methods.forms import divide, division_triangle
+from knotwork.insertion.methods.perspectives import by_intervals, by_vertices
+from knotwork.insertion.methods.problem import in_real_coordinates
 from knotwork.knots import some_knots
+from knotwork.schemes import copy, copy_points, factored, triangle
 from knotwork.spline import Spline
 
 #: what combines two points of this chapter: P + (u - a) Q
@@ -92,74 +92,78 @@ def equal_rounds(Z, first, e, P, s, n, count, D):
 
 
 @kernel
-def forward(Z, t, b, n, m, A, C, stack, K, D):
+def forward(Z, t, b, m, room):
     """Steps 1 to 4 for one interval: the new knots ascending, then the old ones at the right (Fig. 3.2)."""
+    n, F, s, D = room.n, room.A[0], room.knots, room.D
     for i in range(n + m):
-        K[i] = t[i]
+        s[i] = t[i]
     for i in range(n):
-        K[n + m + i] = b[i]
-    copy_points(A[0], Z, n + 1, D)
-    copy(Z[n + m], A[0, n], D)
-    division_triangle(A[0], t, b, n, D)
-    rounds(Z, 0, 1, A[0], K, n, n + m - 1, D)
+        s[n + m + i] = b[i]
+    copy_points(F, Z, n + 1, D)
+    copy(Z[n + m], F[n], D)
+    division_triangle(F, t, b, n, D)
+    rounds(Z, 0, 1, F, s, n, n + m - 1, D)
 
 
 @kernel
-def backward(Z, t, b, n, m, A, C, stack, K, D):
+def backward(Z, t, b, m, room):
     """The mirror image: from the right edge of the division triangle, the new knots descending (§3.6.1)."""
+    n, F, s, D = room.n, room.A[0], room.knots, room.D
     for i in range(n):
-        K[i] = b[n - 1 - i]
-        K[n + m + i] = t[n - 1 - i]
+        s[i] = b[n - 1 - i]
+        s[n + m + i] = t[n - 1 - i]
     for i in range(m):
-        K[n + i] = t[n + m - 1 - i]
+        s[n + i] = t[n + m - 1 - i]
     for j in range(n + 1):
-        copy(A[0, j], Z[n - j], D)
-    copy(Z[n + m], A[0, 0], D)
-    division_triangle(A[0], K, K[n + m :], n, D)
-    rounds(Z, n + m, -1, A[0], K, n, n + m - 1, D)
+        copy(F[j], Z[n - j], D)
+    copy(Z[n + m], F[0], D)
+    division_triangle(F, s, s[n + m :], n, D)
+    rounds(Z, n + m, -1, F, s, n, n + m - 1, D)
 
 
 @kernel
-def both_ways(Z, t, b, n, m, A, C, stack, K, D):
+def both_ways(Z, t, b, m, room):
     """Part forward, part backward, from the two edges of one division triangle (§3.6.1)."""
-    copy_points(A[0], Z, n + 1, D)
-    copy(A[1, 0], A[0, n], D)
-    copy(Z[n + m], A[0, n], D)
+    n, F, G, s, D = room.n, room.A[0], room.A[1], room.knots, room.D
+    copy_points(F, Z, n + 1, D)
+    copy(G[0], F[n], D)
+    copy(Z[n + m], F[n], D)
     for j in range(1, n + 1):
         for i in range(n, j - 1, -1):
-            divide(A[0, i], A[0, i - 1], A[0, i], t[i - 1], b[i - j], D)
-        copy(A[1, j], A[0, n], D)
+            divide(F[i], F[i - 1], F[i], t[i - 1], b[i - j], D)
+        copy(G[j], F[n], D)
     for i in range(n + m):
-        K[i] = t[i]
+        s[i] = t[i]
     for i in range(n):
-        K[n + m + i] = b[i]
+        s[n + m + i] = b[i]
     half = (n + m) // 2
-    rounds(Z, 0, 1, A[0], K, n, half, D)
+    rounds(Z, 0, 1, F, s, n, half, D)
     for i in range(n):
-        K[i] = b[n - 1 - i]
-        K[n + m + i] = t[n - 1 - i]
+        s[i] = b[n - 1 - i]
+        s[n + m + i] = t[n - 1 - i]
     for i in range(m):
-        K[n + i] = t[n + m - 1 - i]
-    rounds(Z, n + m, -1, A[1], K, n, n + m - 1 - half, D)
+        s[n + i] = t[n + m - 1 - i]
+    rounds(Z, n + m, -1, G, s, n, n + m - 1 - half, D)
 
 
 @kernel
-def load_neighbour(F, G, P, U, q, before, n, D):
-    """F = the left side of the division triangle G of interval q, one side new if q follows `before` (Fig. 3.9).
+def load_neighbour(P, U, q, before, room):
+    """F = the left side of the division triangle A of interval q, one side new if q follows `before` (Fig. 3.9).
 
-    D_i^j = (D_i^{j-1} - D_{i-1}^{j-1}) / (t_{i+n-j+1} - t_i) does not depend on the interval: G[i - q + n, j] holds it.
+    D_i^j = (D_i^{j-1} - D_{i-1}^{j-1}) / (t_{i+n-j+1} - t_i) does not depend on the interval: A[i - q + n, j] holds it.
     """
-    kept = 0
+    n, A, D = room.n, room.A, room.D
+    known = 0
     if before >= 0 and q == before + 1:
-        kept = n
+        known = n
         for k in range(n):
-            copy_points(G[k], G[k + 1], k + 1, D)
-    for k in range(kept, n + 1):
-        copy(G[k, 0], P[q - n + k], D)
+            copy_points(A[k], A[k + 1], k + 1, D)
+    for k in range(known, n + 1):
+        copy(A[k, 0], P[q - n + k], D)
         for j in range(1, k + 1):
-            divide(G[k, j], G[k - 1, j - 1], G[k, j - 1], U[q - n + k], U[q + k - j + 1], D)
+            divide(A[k, j], A[k - 1, j - 1], A[k, j - 1], U[q - n + k], U[q + k - j + 1], D)
     for j in range(n + 1):
-        copy(F[j], G[j, j], D)
+        copy(room.F[j], A[j, j], D)
 
 
 step_4 = by_intervals.variant(step=forward)

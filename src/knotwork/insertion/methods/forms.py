@@ -1,78 +1,34 @@
 """The forms of every point method: how two points are combined, and over which knots (§4.10).
 
-A method is written once, over the kernels `combine`, `frame` and `finish`. Its forms bind them anew:
+A method is written once, over the kernels `combine`, `is_right_knot`, `start_up` and `right_knots`. Its forms bind
+them anew:
 
-- *rewritten*: the same combination with one multiplication a coordinate;
+- *rewritten*: the same combination with one multiplication per coordinate;
 - *factored*: the points of an interval are first taken to the knots t_{q-n+1} … t_q, δⁿ (the division triangle); over
-  these a combination has no division, whatever the algorithm. What is left over δ at the end goes back.
+  these a combination has no division, whatever the algorithm. At the end the knots at the right are put back.
 """
 
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import Kernel, kernel
+from knotwork.schemes import combine, copy, factored, rewritten
 
 
 @kernel
-def combine(S, P, Q, a, b, u, D):
-    """S = B(…, u) from P = B(…, a) and Q = B(…, b): a P + (1 - a) Q in the standard form."""
-    w = (u - a) / (b - a)
-    v = 1 - w
-    for c in range(len(D)):
-        S[c] = v * P[c] + w * Q[c]
-
-
-@kernel
-def rewritten(S, P, Q, a, b, u, D):
-    """S = B(…, u) from P = B(…, a) and Q = B(…, b): Q + a (P - Q), the rewritten form."""
-    w = (u - a) / (b - a)
-    for c in range(len(D)):
-        S[c] = P[c] + w * (Q[c] - P[c])
-
-
-@kernel
-def factored(S, P, Q, a, b, u, D):
-    """S = B(…, u) from P = B(…, a) and Q = B(…, δ): P + (u - a) Q, the factored form; b is not used."""
-    w = u - a
-    for c in range(len(D)):
-        S[c] = P[c] + w * Q[c]
-
-
-@kernel
-def copy(S, P, D):
-    """S = P."""
-    for c in range(len(D)):
-        S[c] = P[c]
-
-
-@kernel
-def copy_points(S, R, m, D):
-    """S[j] = R[j] for j < m."""
-    for j in range(m):
-        copy(S[j], R[j], D)
-
-
-@kernel
-def level(S, R, a, b, m, u, D):
-    """One level: S[j] combines R[j] and R[j + 1], where the knots a[j] and b[j] give way to u. S may be R."""
-    for j in range(m):
-        combine(S[j], R[j], R[j + 1], a[j], b[j], u, D)
-
-
-@kernel
-def kept(x, b):
-    """Tell whether the argument x is the knot b, which the points at its right have."""
+def is_right_knot(x, b):
+    """Tell whether the argument x is the next knot b at the right: of a row, the points that have b are then kept."""
     return x == b
 
 
 @kernel
-def replaced(x, b):
-    """No point over δⁿ has a knot of b."""
+def no_right_knot(x, b):
+    """Over a_1 … a_n, δⁿ no point has a knot of the right, so that each goes in like any other."""
     return False
 
 
 @kernel
-def frame(F, a, b, n, D):
-    """Leave the points of an interval over its own knots a_1 … a_n, b_1 … b_n."""
+def start_up(F, a, b, n, D):
+    """F[j] stays B(a_{j+1} … a_n, b_1 … b_j): most forms work over the knots of the interval."""
 
 
 @kernel
@@ -92,8 +48,8 @@ def division_triangle(F, a, b, n, D):
 
 
 @kernel
-def finish(Y, a, b, last, n, D):
-    """Leave the points over the knots they have."""
+def right_knots(Y, a, b, last, n, D):
+    """Y[j] is B(a_{j+1} … a_n, b_1 … b_j) already."""
 
 
 @kernel
@@ -115,5 +71,7 @@ def in_forms(method: Kernel) -> dict[str, Kernel]:
     return {
         "standard": method,
         "rewritten": method.variant(combine=rewritten),
-        "factored": method.variant(combine=factored, kept=replaced, frame=division_triangle, finish=back),
+        "factored": method.variant(
+            combine=factored, is_right_knot=no_right_knot, start_up=division_triangle, right_knots=back
+        ),
     }

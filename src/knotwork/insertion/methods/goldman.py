@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.methods.forms import copy, copy_points, kept, level
-from knotwork.insertion.methods.steps import by_intervals, by_segments
+from knotwork.insertion.methods.forms import is_right_knot
+from knotwork.insertion.methods.perspectives import by_intervals, by_segments
+from knotwork.schemes import copy, copy_points, level
 
 
 @kernel
@@ -24,14 +25,15 @@ def descending(C, t, b, n, x, g, D):
 
 
 @kernel
-def in_groups(Z, t, b, n, m, A, C, stack, K, D):
+def in_groups(Z, t, b, m, room):
     """Insert up to n + 1 knots at once: two triangles over the same points, smaller ones at the end (Fig. 4.5, 4.6)."""
+    n, F, C, D = room.n, room.A[0], room.C, room.D
     k = 0
     while k < m:
         g = min(n + 1, m - k)
-        copy_points(A[0], Z[k:], n + 1, D)
+        copy_points(F, Z[k:], n + 1, D)
         copy_points(C, Z[k + n - g + 1 :], g, D)
-        ascending(Z[k:], A[0], t[k:], b, t[k + n :], n, min(g, n), D)
+        ascending(Z[k:], F, t[k:], b, t[k + n :], n, min(g, n), D)
         descending(C, t[k:], b, n, t[k + n :], g, D)
         copy_points(Z[k + n + 1 :], C, g, D)
         k += g
@@ -49,7 +51,7 @@ def shared_improved(F, a, b, x, p, n, D):
     """The same, keeping what is an old knot beside the segment: of the points F[start …] are left. Returns start."""
     start = 0
     for r in range(n - p):
-        if kept(x[p + r], b[start]):
+        if is_right_knot(x[p + r], b[start]):
             start += 1
         else:
             level(F[start:], F[start:], a[r:], b[start:], n - r, x[p + r], D)
@@ -57,11 +59,12 @@ def shared_improved(F, a, b, x, p, n, D):
 
 
 @kernel
-def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):
+def two_triangles(S, a, b, x, k, room):
     """Vertices of a new segment: x_p … x_1 go in, then x_{n+1} … off the right edge (Fig. 4.7).
 
     The segment is that between x_p and x_{p+1}, p = k - 1. A whole group has p = n, smaller ones share x_{p+1} … x_n.
     """
+    n, F, D = room.n, room.A[0], room.D
     p = k - 1
     shared(F, a, b, x, p, n, D)
     for r in range(p):
@@ -73,12 +76,13 @@ def two_triangles(S, F, a, b, x, k, n, A, C, stack, D):
 
 
 @kernel
-def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):
+def two_triangles_improved(S, a, b, x, k, room):
     """The same, where an argument that is an old knot beside the segment is not put in but kept.
 
     Of a row B(…, a, b) the points that have the innermost knot of a, or of b, among their arguments are simply kept; so
     no combination extrapolates.
     """
+    n, F, D = room.n, room.A[0], room.D
     p = k - 1
     start = shared_improved(F, a, b, x, p, n, D)
     low = n - p
@@ -90,7 +94,7 @@ def two_triangles_improved(S, F, a, b, x, k, n, A, C, stack, D):
     for s in range(k):
         copy(S[s], F[start], D)
         if s < p:
-            if kept(x[n + s], b[start]):
+            if is_right_knot(x[n + s], b[start]):
                 start += 1
             else:
                 level(F[start:], F[start:], x[s:], b[start:], p - s, x[n + s], D)

@@ -6,8 +6,8 @@ Row i holds the discrete B-splines α_j(i) of the columns j = q - n … q; q is 
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.methods.forms import combine, copy, copy_points
-from knotwork.insertion.methods.steps import by_intervals
+from knotwork.insertion.methods.perspectives import by_intervals
+from knotwork.schemes import combine, copy, copy_points
 
 
 @kernel
@@ -42,18 +42,17 @@ def rows(E, U, T, old, where, n, one):
 
 
 @kernel
-def columns(E, U, W, interval, at, where, n, s, c, one, D):
+def columns(E, U, W, interval, at, where, s, c):
     """Find every column by Boehm's algorithm for the control points δ_ij, without the combinations of zeros (§4.17).
 
     New knot w lies in old interval[w]; column j begins at row at[j]. Knots in the first interval of B-spline j go in in
-    decreasing order, those in the others in increasing order: that meets the most zeros. c has one coordinate; its last
-    row is the zero beside the column.
+    decreasing order, those in the others in increasing order: that meets the most zeros. s is room for knots, c for a
+    column of points with one coordinate; its last two rows are 1 and the 0 beside the column.
     """
+    n, one, beside, D = E.shape[1] - 1, c[len(c) - 2, 0], len(c) - 1, c[0]
     for i in range(len(E)):
         for r in range(n + 1):
             E[i, r] = one - one
-    beside = len(c) - 1
-    c[beside, 0] = one - one
     lo = mid = hi = 0
     for j in range(len(at)):
         while lo < len(W) and interval[lo] < j:
@@ -182,23 +181,24 @@ def from_apex(E, G, k, j, one):
 
 
 @kernel
-def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):
-    """Both triangles for every unit vector at once; the weights are shared. K[2] is the unit matrix."""
-    G, X, F = K[0], K[1], A[0]
+def triangles_by_columns(Z, t, b, m, room):
+    """Both triangles for every unit vector at once; the weights are shared."""
+    n, F, D = room.n, room.A[0], room.D
+    G, X, unit = room.weights[0], room.weights[1], room.weights[2]
     k = 0
     while k < m:
         g = min(n + 1, m - k)
         top, rest = min(g, n), n - g + 1
         copy_points(F, Z[k:], n + 1, D)
         weights(G, t[k:], b, t[k + n :], 1, n, top)
-        set_to(X, K[2], n + 1)
+        set_to(X, unit, n + 1)
         for r in range(top):
             product(Z[k + r], X[0], F, 0, r, D)
             next_columns(X, G, n - r, r)
         for j in range(n - top + 1):
             product(Z[k + top + j], X[j], F, j, j + top, D)
         weights(G, t[k + rest :], b[rest:], t[k + n :], -1, g - 1, g - 1)
-        set_to(X, K[2], g)
+        set_to(X, unit, g)
         for r in range(g - 1):
             next_columns(X, G, g - 1 - r, r)
         for j in range(g):
@@ -207,9 +207,10 @@ def triangles_by_columns(Z, t, b, n, m, A, C, stack, K, D):
 
 
 @kernel
-def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):
+def triangles_by_rows(Z, t, b, m, room):
     """One triangle, top down, for every new vertex; those of one group are parts of two, which share the weights."""
-    G, E, F = K[0], K[1, 0], A[0]
+    n, F, D = room.n, room.A[0], room.D
+    G, E, one = room.weights[0], room.weights[1, 0], room.weights[2, 0, 0]
     k = 0
     while k < m:
         g = min(n + 1, m - k)
@@ -218,11 +219,11 @@ def triangles_by_rows(Z, t, b, n, m, A, C, stack, K, D):
         weights(G, t[k:], b, t[k + n :], 1, n, top)
         for i in range(n + 1):
             height, j = min(i, top), max(i - top, 0)
-            from_apex(E, G, height, j, K[2, 0, 0])
+            from_apex(E, G, height, j, one)
             product(Z[k + i], E, F[j:], 0, height, D)
         weights(G, t[k + rest :], b[rest:], t[k + n :], -1, g - 1, g - 1)
         for j in range(g):
-            from_apex(E, G, g - 1 - j, j, K[2, 0, 0])
+            from_apex(E, G, g - 1 - j, j, one)
             product(Z[k + n + 1 + j], E, F[rest + j :], 0, g - 1 - j, D)
         k += g
 

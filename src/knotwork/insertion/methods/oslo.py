@@ -1,18 +1,11 @@
-"""The Oslo algorithm: one triangle a new vertex (§4.6), and the improved one (§4.9)."""
+"""The Oslo algorithm: one triangle per new vertex (§4.6), which is `schemes.triangle`; and the improved one (§4.9)."""
 
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.insertion.methods.forms import copy, kept, level
-from knotwork.insertion.methods.steps import by_vertices
-
-
-@kernel
-def triangle(S, F, a, b, x, n, D):
-    """S = B(x_1 … x_n): an Oslo triangle of n levels (Fig. 4.2)."""
-    for r in range(n):
-        level(F, F, a[r:], b, n - r, x[r], D)
-    copy(S, F[0], D)
+from knotwork.insertion.methods.forms import is_right_knot
+from knotwork.insertion.methods.perspectives import by_vertices
+from knotwork.schemes import copy, level, triangle
 
 
 @kernel
@@ -30,7 +23,7 @@ def triangle_improved(S, F, a, b, x, n, D):
         if x[r] == a[top - 1]:
             top -= 1
     for r in range(p, n):
-        if kept(x[r], b[start]):
+        if is_right_knot(x[r], b[start]):
             start += 1
     m = top - start
     low, left, right = start, n, 0
@@ -42,7 +35,7 @@ def triangle_improved(S, F, a, b, x, n, D):
             low += 1
             m -= 1
     for r in range(p, n):
-        if kept(x[r], b[right]) and right < start:
+        if is_right_knot(x[r], b[right]) and right < start:
             right += 1
         else:
             level(F[start:], F[start:], a[low:], b[start:], m, x[r], D)

@@ -12,6 +12,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, empty
 from knotwork.arithmetic.kernel import Kernel, extent, kernel
 from knotwork.insertion.methods.matrix import apply
+from knotwork.insertion.methods.perspectives import Room
 from knotwork.knots import merged
 
 
@@ -53,7 +54,7 @@ def group(first, where, old, interval, T, n, lo, hi):
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class Problem:
     """Old knots U, which may repeat, sorted new knots W inside the domain, and old points P of shape (N, d)."""
 
     U: Array
@@ -114,52 +115,53 @@ class Setting:
         count = group(first, where, self.old, self.where, self.T, self.n, self.U[self.n], self.U[len(self.P)])
         return first[: count + 1], where[:count]
 
-    @property
-    def intervals(self) -> int:
-        """How many old intervals get new knots."""
-        return int(np.count_nonzero(self.gap))
+    # ---- running a kernel of `perspectives` -----------------------------------------------------------------------
 
-    @property
-    def changed(self) -> int:
-        """How many new vertices are no old ones: r in the book's counts (§4.15)."""
-        return int(np.count_nonzero(self.old < 0))
+    def _output(self) -> Array:
+        return empty((len(self.P) + len(self.W), self.P.shape[1]), self.P.dtype)
 
-    # ---- running a kernel of `steps` ------------------------------------------------------------------------------
-
-    def _arrays(self) -> tuple[Array, Array, Array, Array, Any]:
-        """Return the result, and what kernels use: rows A and C of n + 1 points, a stack, the number of coordinates."""
-        (N, d), n, dtype = self.P.shape, self.n, self.P.dtype
-        out = empty((N + len(self.W), d), dtype)
-        rows = n.bit_length() + 4
-        return (
-            out,
-            np.empty((rows, n + 1, d), dtype),
-            np.empty((n + 1, d), dtype),
+    def _room(self, rows: int) -> Room:
+        """Return what a kernel works in; with so many rows of points."""
+        n, d = self.n, self.P.shape[1]
+        points, dtype = self.P.dtype, self.U.dtype
+        return Room(
+            n,
+            np.empty((n + 1, d), points),
+            np.empty((rows, n + 1, d), points),
+            np.empty((n + 1, d), points),
             np.empty((rows, 2), np.intp),
+            np.empty(2 * n + int(self.gap.max(initial=0)), dtype),
+            np.stack([np.eye(n + 1, dtype=int)] * 3) * self.one,
             extent(d),
         )
 
-    def by_intervals(self, method: Kernel) -> Array:
-        """Run a knot-oriented method."""
-        return self._by_intervals(method, np.empty(0, self.U.dtype))
-
-    def by_intervals_with_knots(self, method: Kernel) -> Array:
-        """Run a knot-oriented method that brings the knots of an interval into an order of its own."""
-        return self._by_intervals(method, np.empty(2 * self.n + int(self.gap.max(initial=0)), self.U.dtype))
-
-    def by_intervals_with_weights(self, method: Kernel) -> Array:
-        """Run a knot-oriented method that keeps the weights of a triangle."""
-        return self._by_intervals(method, np.stack([np.eye(self.n + 1, dtype=int)] * 3) * self.one)
-
-    def _by_intervals(self, method: Kernel, K: Array) -> Array:
-        out, A, C, stack, D = self._arrays()
-        method(out, self.T, self.P, self.U, self.W, self.ends[1], self.n, A, C, stack, K, D)
-        return out
+    @property
+    def _halvings(self) -> int:
+        """How often n + 1 vertices can be halved, and two more."""
+        return self.n.bit_length() + 2
 
     @cached_property
     def one(self) -> Any:
         """1 in the arithmetic of the knots; among exact numbers a plain Fraction, with which nothing is counted."""
         return Fraction(1) if self.U.dtype == object else self.U.dtype.type(1)
+
+    def by_intervals(self, method: Kernel) -> Array:
+        """Run a knot-oriented method."""
+        Z = self._output()
+        method(Z, self.T, self.P, self.U, self.W, self.ends[1], self._room(self._halvings))
+        return Z
+
+    def by_vertices(self, method: Kernel) -> Array:
+        """Run a vertex-oriented method."""
+        Z = self._output()
+        method(Z, self.P, self.U, self.T, self.old, self.where, self._room(self.n + 1))
+        return Z
+
+    def by_segments(self, method: Kernel) -> Array:
+        """Run a segment-oriented method."""
+        Z = self._output()
+        method(Z, self.P, self.U, self.T, self.old, *self.groups, self._room(self._halvings))
+        return Z
 
     def by_rows(self, method: Kernel) -> Array:
         """Return the matrix of a row-oriented method: row i has columns[i] - n … columns[i]."""
@@ -173,27 +175,13 @@ class Setting:
         E = np.empty((len(self.P) + m, n + 1), self.U.dtype)
         interval = np.repeat(np.arange(len(self.gap)), self.gap)
         at = np.flatnonzero(self.is_old)[: len(self.P)]
-        s, c = np.empty(n + 2 + m, self.U.dtype), np.empty((m + 3, 1), self.U.dtype)
-        method(E, self.U, self.W, interval, at, self.columns, n, s, c, self.one, extent(1))
+        s, c = np.empty(n + 2 + m, self.U.dtype), np.empty((m + 4, 1), self.U.dtype)
+        c[-2:, 0] = self.one, self.one - self.one
+        method(E, self.U, self.W, interval, at, self.columns, s, c)
         return E
 
     def applied(self, E: Array) -> Array:
         """Return the points that a matrix gives."""
-        out, *_, D = self._arrays()
-        apply(out, E, self.P, self.old, self.columns, self.n, D)
-        return out
-
-    def by_vertices(self, method: Kernel) -> Array:
-        """Run a vertex-oriented method."""
-        out, A, C, _, D = self._arrays()
-        G = np.empty((self.n + 1, *C.shape), C.dtype)
-        method(out, self.P, self.U, self.T, self.old, self.where, self.n, A[0], C, G, D)
-        return out
-
-    def by_segments(self, method: Kernel) -> Array:
-        """Run a segment-oriented method."""
-        out, A, C, stack, D = self._arrays()
-        first, where = self.groups
-        F, R = np.empty_like(C), np.empty_like(C)
-        method(out, self.P, self.U, self.T, self.old, first, where, self.n, F, R, A, C, stack, D)
-        return out
+        Z = self._output()
+        apply(Z, E, self.P, self.old, self.columns, self.n, extent(Z.shape[1]))
+        return Z

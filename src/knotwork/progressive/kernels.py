@@ -1,68 +1,28 @@
-"""The triangular schemes of progressive curves: every procedure is a number of levels of one recursion (§2.2, §2.3).
+"""The procedures of progressive curves: `schemes` over homogeneous knots, and what chapter 2 adds (§2.2, §2.3).
 
-Knots and blossom arguments are homogeneous pairs (t, w). One level replaces one argument of all the blossom values
-in a row: from R[q] = B(…, a_q) and R[q + 1] = B(…, b_q), which share all other arguments, comes B(…, u).
+Knots t and arguments U are homogeneous pairs (t, w): t has the shape (2n, 2). P are n + 1 control points, R is room for
+as many.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from knotwork import schemes
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import Kernel, kernel
+from knotwork.schemes import complex_quotient, copy_points, homogeneous, quotient
 
-__all__ = [
-    "blossoms",
-    "boehm",
-    "combine",
-    "cox_de_boor",
-    "edge",
-    "expansion",
-    "integrate",
-    "level",
-    "over",
-    "polya",
-    "quotient",
-    "sablonniere",
-    "sablonniere_optimised",
-    "triangle",
-]
-
-
-@kernel
-def quotient(a, b):
-    """a / b."""
-    return a / b
-
-
-@kernel
-def complex_quotient(a, b):
-    """a / b by divisions of real numbers, on which plain and compiled code agree to the last bit; b is scaled first."""
-    s = 1 / max(abs(b.real), abs(b.imag))
-    c = b * s
-    return a * c.conjugate() * (s / (c.real * c.real + c.imag * c.imag))
+#: the step and its schemes over homogeneous knots: the one text of `schemes`, in its fourth form
+level, apex, between, tetrahedron, halves = (
+    scheme.variant(combine=homogeneous)
+    for scheme in (schemes.level, schemes.triangle, schemes.between, schemes.tetrahedron, schemes.halves)
+)
 
 
 def over(knots: Array, procedure: Kernel) -> Kernel:
     """Return the procedure as it is to run over knots of this arithmetic."""
     return procedure.variant(quotient=complex_quotient) if knots.dtype == np.complex128 else procedure
-
-
-@kernel
-def combine(S, P, Q, a, b, u, D):
-    """S = B(…, u) from P = B(…, a) and Q = B(…, b): (b × u P + u × a Q) / b × a; x × y = x_t y_w - y_t x_w (§2.3.2)."""
-    d = b[0] * a[1] - a[0] * b[1]
-    p = quotient(b[0] * u[1] - u[0] * b[1], d)
-    q = quotient(u[0] * a[1] - a[0] * u[1], d)
-    for c in range(len(D)):
-        S[c] = p * P[c] + q * Q[c]
-
-
-@kernel
-def level(S, R, a, b, m, u, D):
-    """One level: S[q] combines R[q] and R[q + 1], where the knots a[q] and b[q] give way to u. S may be R."""
-    for q in range(m):
-        combine(S[q], R[q], R[q + 1], a[q], b[q], u, D)
 
 
 @kernel
@@ -82,13 +42,8 @@ def blossoms(out, P, t, U, R, D):
     """out[i] = B(U_i1 … U_in) for every row of U: one triangle each, in the one row R."""
     n = len(t) // 2
     for i in range(len(out)):
-        for q in range(n + 1):
-            for c in range(len(D)):
-                R[q, c] = P[q, c]
-        for r in range(n):
-            level(R, R, t[r:], t[n:], n - r, U[i, r], D)
-        for c in range(len(D)):
-            out[i, c] = R[0, c]
+        copy_points(R, P, n + 1, D)
+        apex(out[i], R, t, t[n:], U[i], n, D)
 
 
 @kernel
@@ -99,9 +54,7 @@ def edge(out, P, t, A, delta, R, D):
     """
     n = len(t)
     for i in range(len(A)):
-        for q in range(n + 1):
-            for c in range(len(D)):
-                R[q, c] = P[q, c]
+        copy_points(R, P, n + 1, D)
         for r in range(n):
             level(R, R, t[r:], delta, n - r, A[i], D)
         f = A[i, 1] - A[i, 1] + 1
@@ -112,70 +65,17 @@ def edge(out, P, t, A, delta, R, D):
 
 
 @kernel
-def boehm(T, a, b, D):
-    """T[2n] = control points over u_1 … u_2n, from T[0], those over t_1 … t_2n (§2.2.3).
+def boehm(Z, a, b, D):
+    """Z[n … 2n] = control points over u_1 … u_2n, from Z[0 … n], those over t_1 … t_2n (§2.2.3).
 
     a = t_1 … t_n u_1 … u_n, b = u_{n+1} … u_2n t_{n+1} … t_2n. One at a time, u_2n … u_{n+1} and then u_1 … u_n go in
     between the n knots on the left and the n on the right; the outermost knot and point drop out.
     """
     n = len(a) // 2
     for k in range(n):
-        for c in range(len(D)):
-            T[k + 1, 0, c] = T[k, 0, c]
-        level(T[k + 1, 1:], T[k], a, b[n - k :], n, b[n - 1 - k], D)
+        between(Z, a, b[n - k :], n, b[n - 1 - k], D)
     for k in range(n):
-        level(T[n + k + 1], T[n + k], a[k:], b, n, a[n + k], D)
-        for c in range(len(D)):
-            T[n + k + 1, n, c] = T[n + k, n, c]
-
-
-@kernel
-def sablonniere(Q, T, t, U, V, R, D):
-    """Q[s] = B(u_{s+1} … u_{s+n}), all from T[0]: up the lateral face by U, then parallel to the base by V (§2.2.5).
-
-    U = u_{n+1} … u_2n are the heights of the tetrahedron; at height s, V = u_n … u_1 go in until there are n arguments.
-    """
-    n = len(U)
-    triangle(T, t, U, D)
-    for s in range(n + 1):
-        for q in range(n - s + 1):
-            for c in range(len(D)):
-                R[q, c] = T[s, q, c]
-        for r in range(s, n):
-            level(R, R, t[r:], t[n:], n - r, V[r - s], D)
-        for c in range(len(D)):
-            Q[s, c] = R[0, c]
-
-
-@kernel
-def sablonniere_optimised(Q, t, u, R, first, last, D):
-    """Q[s] = B(u_{s+1} … u_{s+n}), all from R[0], by the paths through the tetrahedron that share the most (§2.2.5).
-
-    The new points i … j need the arguments u_{j+1} … u_{n+i}. A row that has them serves both halves of i … j: the
-    first takes u_j … u_{m+1} in addition, the second u_{n+i+1} … u_{n+m+1}. Halving makes the fewest combinations.
-    """
-    n = len(t) // 2
-    first[0], last[0] = 0, n
-    top = 0
-    while top >= 0:  # R[top] is the row of the new points first[top] … last[top], still to be made
-        i, j = first[top], last[top]
-        if i == j:
-            for c in range(len(D)):
-                Q[i, c] = R[top, 0, c]
-            top -= 1
-        else:
-            m = (i + j) // 2
-            size = j - i + 1
-            for q in range(size):
-                for c in range(len(D)):
-                    R[top + 1, q, c] = R[top, q, c]
-            for r in range(m - i + 1):
-                level(R[top], R[top], t[n - size + 1 + r :], t[n:], size - 1 - r, u[n + i + r], D)
-            for r in range(j - m):
-                level(R[top + 1], R[top + 1], t[n - size + 1 + r :], t[n:], size - 1 - r, u[j - 1 - r], D)
-            first[top], last[top] = m + 1, j
-            first[top + 1], last[top + 1] = i, m
-            top += 1
+        between(Z[k:], a[k:], b, n, a[n + k], D)
 
 
 @kernel
