@@ -81,7 +81,7 @@ def race(contenders, arguments, quick):
         once = timed(run, arguments, 1)
         if once < 1:  # slower ones would only hold up the rest
             once = timed(run, arguments, 1 + int(0.01 / once))
-            batches[name] = 1 + int(0.005 / once)  # as many warm calls a turn
+            batches[name] = 1 + int(0.005 / once)  # as many warm calls per turn
     times = {name: [] for name in batches}
     budget, start, rounds = (0.3 if quick else 2.0), time.perf_counter(), 0
     while rounds < 5 or (time.perf_counter() - start < budget and rounds < 500):

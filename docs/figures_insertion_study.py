@@ -70,14 +70,14 @@ def counts():
             left.plot(degrees, found, color=colour, linestyle=dash, marker=".", label=name)
     left.plot([], color="black", linestyle=(0, (1, 1.5)), marker=".", label="merge")
     left.legend(frameon=False, handlelength=3, fontsize=8, loc="upper left")
-    plain(left, title=f"{m} knots in one interval", xlabel="degree", ylabel="combinations a knot", ylim=(0, 50))
+    plain(left, title=f"{m} knots in one interval", xlabel="degree", ylabel="combinations per knot", ylim=(0, 50))
     few, shares = 24, (1, 2, 4, 8, 24, 48, 96)
     for name, (colour, dash) in SHOWN.items():
         found = [operations(name, *spread(3, few, k)) / few for k in shares]
         middle.plot([k / few for k in shares], found, color=colour, linestyle=dash, marker=".")
     plain(
-        middle, title=f"cubics in 3-D, {few} knots spread", xlabel="intervals a knot", xscale="log",
-        ylabel="operations a knot", ylim=(0, 165),
+        middle, title=f"cubics in 3-D, {few} knots spread", xlabel="intervals per knot", xscale="log",
+        ylabel="operations per knot", ylim=(0, 165),
     )  # fmt: skip
     middle.set_xticks([1 / 24, 1 / 4, 1, 4], ["1/24", "1/4", "1", "4"])
     middle.minorticks_off()
@@ -93,7 +93,7 @@ def counts():
         right,
         title=f"cubics, {few} knots in one interval",
         xlabel="dimension d",
-        ylabel="operations a knot and coordinate",
+        ylabel="operations per knot and coordinate",
     )
     right.set_ylim(0)
     right.legend(frameon=False, handlelength=3, fontsize=8)

@@ -204,7 +204,7 @@ class Spline(Frozen):
         Parameters
         ----------
         *u : array_like
-            One number or array a parameter; arrays broadcast against each other.
+            One number or array per parameter; arrays broadcast against each other.
         grid : bool
             Evaluate at all combinations of flat arrays u, v, …: the result has shape (len(u), len(v), …, d).
         extrapolate : bool

@@ -85,7 +85,7 @@ def test_trims_are_left_out_with_a_warning(tmp_path: Path) -> None:
         ({"size_u": 10**30}, "do not fit"),
         ({"knotvector_u": [0, 1, 0, 1]}, r"shape\.data\[0\]\.knotvector_u: knots\[1\] = 1\.0 is above"),
         ({"control_points": {"points": [[1, 2], [3]]}}, r"points\[1\] has length 1"),
-        ({"control_points": {"points": []}}, "expected one point a row"),
+        ({"control_points": {"points": []}}, "expected one point per row"),
         ({"control_points": surface()["control_points"] | {"weights": [1]}}, "1 weights given for 6 points"),
         ({"control_points": surface()["control_points"] | {"weights": [1, 1, 0, 1, 1, 1]}}, r"weights\[0, 2\] is 0\.0"),
         ({"control_points": surface()["control_points"] | {"weights": [1, 1, 1e999, 1, 1, 1]}}, r"weights\[2\] is inf"),

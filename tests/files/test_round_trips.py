@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays as numpy_arrays
 
 import knotwork as kw
-from knotwork.files import arrays, structured
+from knotwork.files import json, npz
 from strategies import spaces
 
 #: every finite float, the smallest and −0.0 included
@@ -59,8 +59,8 @@ def back(format: ModuleType, splines: list[kw.Spline]) -> list[kw.Spline]:
 @pytest.mark.parametrize(
     ("format", "dtype"),
     [
-        *[(structured, dtype) for dtype in (np.float64, np.float32, np.complex128, object)],
-        *[(arrays, dtype) for dtype in (np.float64, np.float32, np.complex128)],
+        *[(json, dtype) for dtype in (np.float64, np.float32, np.complex128, object)],
+        *[(npz, dtype) for dtype in (np.float64, np.float32, np.complex128)],
     ],
 )
 @given(data=st.data())
@@ -70,7 +70,7 @@ def test_round_trip_is_exact(format: ModuleType, dtype: Any, data: Any) -> None:
         same_bits(a, b)
 
 
-@pytest.mark.parametrize("format", [structured, arrays])
+@pytest.mark.parametrize("format", [json, npz])
 def test_homogeneous_coordinates_survive_where_a_division_would_not(format: ModuleType) -> None:
     rng = np.random.default_rng(0)
     c = kw.Spline(kw.SplineSpace.clamped(3, 500), rng.random((500, 3)) + 0.1, rational=True)

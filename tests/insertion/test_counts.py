@@ -158,7 +158,7 @@ def test_the_printed_example(m):
     assert count("factored-split", segment(3, 2), inside(m)) == Counts(18 + 9 * m, 6 * m, start_up.divisions, 3 * m)
 
 
-#: Table 4.2: combinations a knot, a new vertex to be found, or any new vertex, of cubics in space
+#: Table 4.2: combinations per knot, a new vertex to be found, or any new vertex, of cubics in space
 TABLE_42 = {
     "boehm": ("m", F(3)), "oslo": ("r", F(6)), "goldman": ("m", F(3)), "goldman-modified": ("p + m", F(3)),
     "sablonniere": ("p + m", F(4)), "sablonniere-recursive": ("p + m", F(7, 2)), "goldman-sablonniere": ("m", F(16, 5)),

@@ -89,7 +89,7 @@ def test_evenly_spaced(case):
 
 
 def test_forward_differencing_only_adds():
-    """n additions a point: so many more for twice as many points, and nothing else."""
+    """n additions per point: so many more for twice as many points, and nothing else."""
     c = Curve([0, 1, 2, 4, 5, 7], Counting.array([3, 1, 4, 1]))
     costs = []
     for count in (10, 20):

@@ -340,10 +340,10 @@ def test_blossom_arguments(args, says):
 @pytest.mark.parametrize(
     ("args", "interval", "says"),
     [
-        ([0, 0, 0], None, "expected 2, one a parameter"),
-        (None, None, "None given; expected 2, one a parameter"),
+        ([0, 0, 0], None, "expected 2, one per parameter"),
+        (None, None, "None given; expected 2, one per parameter"),
         ([[0, 0, 0], [0, 0]], None, "2 arguments given; the blossom of degree 3"),
-        ([[0, 0, 0], [0, 0, 0]], 0, "intervals 0 given; expected 2, one a parameter"),
+        ([[0, 0, 0], [0, 0, 0]], 0, "intervals 0 given; expected 2, one per parameter"),
         ([[0, 0, 0], [0, 0, 0]], [0, 7], "interval 7 given"),
         ([[0, 0, 0], ["a", 0, 0]], None, "expected numbers"),
     ],

@@ -462,10 +462,10 @@ SURFACE = kw.surface(np.zeros((5, 4, 3)))
         (1 / 3, {"tolerance": float("nan")}, ParameterError, "tolerance is nan"),
         (1 / 3, {"tolerance": float("inf")}, ParameterError, "tolerance is inf"),
         (1 / 3, {"tolerance": [1.0, float("nan")]}, ParameterError, r"tolerance\[1\] is nan"),
-        (1 / 3, {"tolerance": [1.0]}, ParameterError, "one a component, 2"),
-        (1 / 3, {"tolerance": [1.0, 1.0, 1.0]}, ParameterError, "one a component, 2"),
-        (1 / 3, {"tolerance": []}, ParameterError, "one a component, 2"),
-        (1 / 3, {"tolerance": [[1.0, 1.0]]}, ParameterError, "one a component, 2"),
+        (1 / 3, {"tolerance": [1.0]}, ParameterError, "one per component, 2"),
+        (1 / 3, {"tolerance": [1.0, 1.0, 1.0]}, ParameterError, "one per component, 2"),
+        (1 / 3, {"tolerance": []}, ParameterError, "one per component, 2"),
+        (1 / 3, {"tolerance": [[1.0, 1.0]]}, ParameterError, "one per component, 2"),
         (1 / 3, {"tolerance": 1j}, ParameterError, "tolerance"),
         (1 / 3, {"tolerance": "small"}, ParameterError, "tolerance"),
         (1 / 3, {"tolerance": None}, ParameterError, "tolerance"),
@@ -481,7 +481,7 @@ def test_bad_input_is_named_and_nothing_changes(knots, options, error, words):
 
 def test_a_rational_curve_has_no_tolerance_for_its_weights():
     curve = kw.curve(CURVE.points, 2, weights=[1, 2, 1, 2, 1.0])
-    with pytest.raises(ParameterError, match="one a component, 2"):
+    with pytest.raises(ParameterError, match="one per component, 2"):
         kw.remove(curve, 1 / 3, tolerance=[1.0, 1.0, 1.0])
     assert kw.remove(curve, 1 / 3, tolerance=[1.0, 1.0]).bound.shape == (2,)
 

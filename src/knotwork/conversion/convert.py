@@ -35,7 +35,7 @@ class Conversion(NamedTuple):
     bound: Any
     #: whether they are the same function; in float arithmetic, up to rounding
     exact: bool
-    #: what was done: "oslo", "interpolation", "least-squares", …; one a parameter where they differ
+    #: what was done: "oslo", "interpolation", "least-squares", …; one per parameter where they differ
     how: Any
 
 
@@ -46,7 +46,7 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
     ----------
     spline : Spline
     target : SplineSpace or sequence of SplineSpace, "bezier" or "monomial"
-        A space of any degree and knots, over the domain of the spline. One a parameter, or a single one with `axis`.
+        A space of any degree and knots, over the domain of the spline. One per parameter, or a single one with `axis`.
         Or a basis, for the polynomial pieces of the spline, each in that basis over its own interval.
     axis : int, optional
         The only parameter to convert.
@@ -147,7 +147,7 @@ def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineS
     spaces = [target] if isinstance(target, SplineSpace) else list(target) if isinstance(target, list | tuple) else []
     if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
         raise ParameterError(
-            f"target {target!r} given; expected a SplineSpace, one a parameter, 'bezier' or 'monomial'"
+            f"target {target!r} given; expected a SplineSpace, one per parameter, 'bezier' or 'monomial'"
         )
     if len(spaces) != len(axes):
         raise ParameterError(f"{len(spaces)} target spaces given for {len(axes)} parameters; axis=… names a single one")

@@ -39,14 +39,14 @@ def from_pieces(
         What `convert` gives for ``"bezier"`` or ``"monomial"``; or coefficients of shape (m, n + 1, d) for a curve of m
         pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, and so on, without d for numbers.
     breaks : array_like or tuple of array_like
-        Increasing, one array a parameter; not with `PolynomialPieces`.
+        Increasing, one array per parameter; not with `PolynomialPieces`.
     basis : {"bezier", "monomial"}
         What the coefficients are: control points, or factors of (t − a)ᵏ, a the start of the interval.
     rational : bool
         Whether the last coordinate is a weight, and the others are multiplied by it.
     periodic : bool
         Whether the end of a curve is joined to its start.
-    smoothness : int or array_like of int, or a tuple of them, one a parameter; optional
+    smoothness : int or array_like of int, or a tuple of them, one per parameter; optional
         How many derivatives are continuous at each break inside (and first, if periodic, at the seam): -1 for a jump,
         the degree for no knot at all. Found if not given.
     tolerance : float, optional

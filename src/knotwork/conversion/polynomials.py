@@ -21,7 +21,7 @@ class PolynomialPieces(NamedTuple):
 
     #: shape (m, n + 1, d) for a curve of m pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, …; no d if scalar
     coefficients: Array
-    #: shape (m + 1,), or a tuple of them, one a parameter
+    #: shape (m + 1,), or a tuple of them, one per parameter
     breaks: Any
     #: "bezier": control points; "monomial": coefficient k is that of (t − a)ᵏ, a the start of the interval
     basis: str

@@ -21,8 +21,8 @@ from knotwork.spline import Spline
 
 __all__ = ["FORMATS", "Written", "read", "write"]
 
-#: the known suffixes, and the modules that read and write such files
-FORMATS = {".csv": "polylines", ".json": "structured", ".npz": "arrays", ".svg": "svg"}
+#: the known suffixes, and the modules that read and write such files: each is named after its format
+FORMATS = {".csv": "csv", ".json": "json", ".npz": "npz", ".svg": "svg"}
 
 
 @dataclass(frozen=True, slots=True)

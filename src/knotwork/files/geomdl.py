@@ -36,7 +36,7 @@ def _shape(entry: Entry, parameters: tuple[str, ...]) -> Spline:
     control = entry["control_points"]
     points = control["points"].array()
     if points.ndim != 2 or not points.size:
-        raise FileError(f"{control.place}.points has shape {points.shape}; expected one point a row")
+        raise FileError(f"{control.place}.points has shape {points.shape}; expected one point per row")
     weights = control["weights"].array() if "weights" in control else None
     if weights is not None:
         points = checked(f"{control.place}.weights", lambda: _homogeneous(points, weights))

@@ -1,4 +1,4 @@
-"""Arrays of Bézier points, one net a piece: degree raised, halved."""
+"""Arrays of Bézier points, one net per piece: degree raised, halved."""
 
 from __future__ import annotations
 

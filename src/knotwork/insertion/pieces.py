@@ -76,7 +76,7 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     nets : ndarray
         Shape (m, n + 1, d) for a curve of m pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, and so on; no d for a
         scalar spline. Homogeneous coordinates (points times weights, weights) if the spline is rational.
-    breaks : ndarray, shape (m + 1,), or a tuple of them, one a parameter
+    breaks : ndarray, shape (m + 1,), or a tuple of them, one per parameter
 
     Examples
     --------
@@ -123,7 +123,7 @@ def from_bezier(nets: Any, breaks: Any, rational: bool = False) -> Spline:
     nets : array_like
         As `to_bezier` returns them.
     breaks : array_like or tuple of array_like
-        Increasing; one array a parameter.
+        Increasing; one array per parameter.
     rational : bool
         Whether the nets are homogeneous, the last coordinate the weight.
 

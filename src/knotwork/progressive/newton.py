@@ -47,7 +47,7 @@ def differences(c, x, f, D):
 
 @kernel
 def march(out, difference, D):
-    """out[i] = p(a + i h) from p(a), …, p(a + n h): differences Δ^k p(a), then n additions a point (§2.4.5)."""
+    """out[i] = p(a + i h) from p(a), …, p(a + n h): differences Δ^k p(a), then n additions per point (§2.4.5)."""
     n = len(difference) - 1
     for k in range(1, n + 1):
         for q in range(n, k - 1, -1):
@@ -136,7 +136,7 @@ def _derivative_of_power(t: Array, x: Any, n: int, r: int) -> Array:
 
 
 def evenly_spaced(curve: Curve, start: Any, step: Any, count: int) -> Array:
-    """Return the curve at start, start + step, …, by forward differencing: n additions a point (§2.4.5).
+    """Return the curve at start, start + step, …, by forward differencing: n additions per point (§2.4.5).
 
     In floats the rounding of the differences grows with the nth power of `count`; exact arithmetic has none.
 

@@ -51,7 +51,7 @@ def blossom(spline: Spline, args: Any, interval: Any = None) -> Any:
     ----------
     spline : Spline
         If rational, the blossom is that of its homogeneous coordinates.
-    args : sequence of `degree` numbers and pairs; a sequence of such sequences, one a parameter, for surfaces
+    args : sequence of `degree` numbers and pairs; a sequence of such sequences, one per parameter, for surfaces
         A number u is the affine argument (u, 1); a pair is taken as it is; `progressive.DELTA` differentiates.
     interval : int or pair of numbers, or one of them a parameter, optional
         The segment, as in `segment`. By default one whose blossom at these arguments is a control point of some
@@ -88,7 +88,7 @@ def blossom(spline: Spline, args: Any, interval: Any = None) -> Any:
 
 def _one_each(values: Any, k: int, what: str) -> list[Any]:
     if not isinstance(values, list | tuple | np.ndarray) or len(values) != k:
-        raise ParameterError(f"{what} {values!r} given; expected {k}, one a parameter")
+        raise ParameterError(f"{what} {values!r} given; expected {k}, one per parameter")
     return list(values)
 
 

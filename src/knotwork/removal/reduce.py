@@ -36,7 +36,7 @@ class Removal(NamedTuple):
     spline: Spline
     #: the knots that were removed, sorted
     removed: Array
-    #: what the removal changed at most: a number, or one a component if the tolerance was given so
+    #: what the removal changed at most: a number, or one per component if the tolerance was given so
     bound: Any
 
 
@@ -44,7 +44,7 @@ class Reduction(NamedTuple):
     """The result of `reduce`."""
 
     spline: Spline
-    #: what the reduction changed at most: a number, or one a component if the tolerance was given so
+    #: what the reduction changed at most: a number, or one per component if the tolerance was given so
     bound: Any
     #: the knots that were removed, sorted
     removed: Array
@@ -157,7 +157,7 @@ class Original:
         given = real_numbers(tolerance, "tolerance", ParameterError)
         if given.shape not in ((), (spline.dim,)):
             raise ParameterError(
-                f"tolerance of shape {given.shape} given; expected a number or one a component, {spline.dim}"
+                f"tolerance of shape {given.shape} given; expected a number or one per component, {spline.dim}"
             )
         given = in_arithmetic_of(spline.coefficients, given, "tolerance", ParameterError)
         if (given < 0).any():
@@ -201,7 +201,7 @@ class Original:
         return 2**64 / size if size > 0 else 1
 
     def reported(self, bound: Array) -> Any:
-        """Return the bound as the tolerance was given: a number, or one a component."""
+        """Return the bound as the tolerance was given: a number, or one per component."""
         return bound.max(keepdims=True).item() if self.one_number else bound
 
     def difference(self, other: Spline, gone: Array) -> Array:

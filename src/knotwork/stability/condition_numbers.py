@@ -122,7 +122,7 @@ def heights(window: list[Any], s: Any) -> list[Any]:
 def discrete_chebyshev(A: Banded, near: Array) -> Array:
     """Return the c with values A·c that are ±1 by turns in as many rows as A has columns, and nowhere larger.
 
-    The search starts from rows about `near`, one a column, increasing or nearly so.
+    The search starts from rows about `near`, one per column, increasing or nearly so.
     """
     n = A.columns
     i, place = np.nonzero(A.entries)

@@ -49,7 +49,7 @@ S = np.linspace(0, 1, 9)
 
 
 def assert_pieces(curve: kw.Spline, pieces: list[Any], closed: bool = False) -> None:
-    """Assert that the curve runs through these Bézier pieces, one an interval, joined with multiplicity = degree."""
+    """Assert that the curve runs through these Bézier pieces, one per interval, joined with multiplicity = degree."""
     n = curve.space.degree
     t = curve.space.breaks
     assert curve.space.periodic == closed

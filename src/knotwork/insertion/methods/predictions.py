@@ -32,7 +32,7 @@ Formula = Callable[[Size], Any]
 
 
 def boehm(s: Size) -> Any:
-    """n a knot; so have Goldman's version of the Oslo algorithm and the improved modified one."""
+    """n per knot; so have Goldman's version of the Oslo algorithm and the improved modified one."""
     return s.m * s.n
 
 
@@ -83,7 +83,7 @@ def both_ways(s: Size) -> Any:
 
 
 def step_4(s: Size) -> Any:
-    """n a knot, and the rounds of the old knots at the right of every interval, n (n - 1) / 2 (§3.5)."""
+    """n per knot, and the rounds of the old knots at the right of every interval, n (n - 1) / 2 (§3.5)."""
     return with_right_knots(boehm)(s)
 
 
@@ -171,14 +171,14 @@ def boehm_columns(s: Size) -> Counts:
 
 
 def oslo_rows(s: Size) -> Counts:
-    """A triangle of numbers a row, top down."""
+    """A triangle of numbers per row, top down."""
     n, (a, m) = s.n, _product(s)
     triangle = Fraction(n * (n + 1), 2)
     return _counts(2 * n * (n + 2) * s.r + a, triangle * s.r + m, triangle * s.r, 0)
 
 
 def merge(s: Size) -> Counts:
-    """At most a triangle of numbers a row, where both terms of each sum are multiplied."""
+    """At most a triangle of numbers per row, where both terms of each sum are multiplied."""
     n, (a, m) = s.n, _product(s)
     return _counts(2 * n * (n + 2) * s.r + a, n * (n + 1) * s.r + m, Fraction(n * (n + 1) * s.r, 2), 0)
 

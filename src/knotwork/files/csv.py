@@ -1,4 +1,4 @@
-"""CSV: polylines, one point a line. Each is read as a curve of degree 1 over its chord lengths."""
+"""CSV: polylines, one point per line. Each is read as a curve of degree 1 over its chord lengths."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def _require_polyline(spline: Spline, place: str) -> None:
             f"write .json, or .svg for plane curves"
         )
     if spline.scalar or spline.dim < 2 or spline.coefficients.dtype.kind != "f":
-        raise FileError(f"{place} is a {str(spline)[1:-1]}; .csv holds floats of two or more coordinates a point")
+        raise FileError(f"{place} is a {str(spline)[1:-1]}; .csv holds floats of two or more coordinates per point")
     space = spline.space
     inner = space.knots[:-1] if space.periodic else space.knots[1:-1]
     jumps = inner[1:][inner[1:] == inner[:-1]]

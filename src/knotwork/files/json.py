@@ -58,7 +58,7 @@ def _spline(entry: Entry) -> Spline:
     degrees, vectors, periodic = (entry[key].items() for key in ("degree", "knots", "periodic"))
     if not len(degrees) == len(vectors) == len(periodic):
         counts = f"{len(degrees)} degrees, {len(vectors)} knot vectors and {len(periodic)} periodic flags"
-        raise FileError(f"{entry.place} has {counts}; expected one each a parameter")
+        raise FileError(f"{entry.place} has {counts}; expected one of each per parameter")
     spaces = [_space(*parts, numbers) for parts in zip(degrees, vectors, periodic, strict=True)]
     rational, coefficients = entry["rational"].flag(), entry["coefficients"]
     return checked(coefficients.place, lambda: Spline(spaces, coefficients.array(numbers), rational))

@@ -113,7 +113,7 @@ def _spline(members: Members, name: str) -> Spline:
     degrees = members.array(f"{name}/degree", "iu", 1).tolist()
     periodic = members.array(f"{name}/periodic", "b", 1).tolist()
     if len(periodic) != len(degrees):
-        raise FileError(f"{name}/periodic.npy has {len(periodic)} flags; expected one a parameter, {len(degrees)}")
+        raise FileError(f"{name}/periodic.npy has {len(periodic)} flags; expected one per parameter, {len(degrees)}")
     spaces = []
     for axis, (degree, closed) in enumerate(zip(degrees, periodic, strict=True)):
         knots = members.array(f"{name}/knots/{axis}", "f", 1)

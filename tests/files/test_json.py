@@ -12,7 +12,7 @@ import pytest
 import knotwork as kw
 from knotwork.errors import FileError
 from knotwork.files import read, write
-from knotwork.files.structured import encode
+from knotwork.files.json import encode
 
 
 def test_other_exact_numbers_are_refused() -> None:

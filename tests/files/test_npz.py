@@ -11,7 +11,7 @@ import pytest
 import knotwork as kw
 from knotwork.errors import FileError
 from knotwork.files import read, write
-from knotwork.files.arrays import encode
+from knotwork.files.npz import encode
 
 CURVE = kw.curve([[0, 0], [1, 2], [3, 1]], degree=1)
 
@@ -53,7 +53,7 @@ def test_numpy_reads_the_members_by_the_documented_names() -> None:
         ({"0/knots/0": np.array(["0", "1"])}, r"0/knots/0\.npy is no array of numbers"),
         ({"0/knots/0": np.zeros((2, 2))}, r"0/knots/0\.npy has shape \(2, 2\); expected 1 dimension"),
         ({"0/degree": np.array([1.5])}, r"0/degree\.npy holds float64; expected a kind among i, u"),
-        ({"0/periodic": np.array([True, False])}, r"0/periodic\.npy has 2 flags; expected one a parameter, 1"),
+        ({"0/periodic": np.array([True, False])}, r"0/periodic\.npy has 2 flags; expected one per parameter, 1"),
         ({"0/coefficients": np.full((3, 2), np.inf)}, r"0/coefficients\.npy: coefficients\[0, 0\] is inf"),
         ({"0/coefficients": np.zeros((4, 2))}, r"0/coefficients\.npy: coefficients of shape \(4, 2\) given"),
         ({"0/coefficients": np.zeros((3, 2), np.float16)}, None),

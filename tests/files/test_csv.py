@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import knotwork as kw
 from knotwork.errors import FileError
 from knotwork.files import read, write
-from knotwork.files.polylines import decode, encode
+from knotwork.files.csv import decode, encode
 
 
 def no_remark(text: str) -> None:
