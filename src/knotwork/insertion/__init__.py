@@ -1,4 +1,4 @@
-"""Knot insertion (chapters 3 and 4): `insert` and what it runs; all methods, one module a family; what they cost."""
+"""Knot insertion (chapters 3 and 4): `insert` and what it runs; all methods, one module per family; what they cost."""
 
 import importlib
 from typing import TYPE_CHECKING, Any

@@ -1,24 +1,25 @@
-"""SVG that is damaged, or made to exhaust the machine: a clear error with its line, soon."""
+"""SVG that is damaged, or made to exhaust the machine: a clear error with its line, soon.
 
-import time
+Where a pattern could look at a text again and again, the text is so long that these tests would take hours.
+"""
+
 from pathlib import Path
 
 import pytest
 
 from knotwork.errors import FileError
 from knotwork.files import read
+from work import calls_within
 
 LINE = '<path d="M0 0L1 0"/>'
 
 
 def refused(tmp_path: Path, text: str | bytes, message: str) -> None:
-    """Assert that a file is refused with this message, within a few seconds."""
+    """Assert that a file is refused with this message, after little work."""
     path = tmp_path / "a.svg"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    start = time.perf_counter()
-    with pytest.raises(FileError, match=rf"a\.svg: {message}"):
+    with calls_within(2_000_000), pytest.raises(FileError, match=rf"a\.svg: {message}"):
         read(path)
-    assert time.perf_counter() - start < 5
 
 
 @pytest.mark.parametrize(
@@ -139,15 +140,17 @@ def test_nesting_too_deep(tmp_path: Path) -> None:
 
 
 def test_use_that_multiplies(tmp_path: Path) -> None:
+    """What is read before the error is what its message says."""
+    path = tmp_path / "a.svg"
     levels = "".join(f'<g id="a{i + 1}">{f"""<use href="#a{i}"/>""" * 10}</g>' for i in range(9))
-    refused(
-        tmp_path,
-        f'<svg><defs><g id="a0">{LINE}</g>{levels}</defs><use href="#a9"/></svg>',
-        "line 1: use elements multiply the drawing beyond 100000",
-    )
+    path.write_text(f'<svg><defs><g id="a0">{LINE}</g>{levels}</defs><use href="#a9"/></svg>')
+    with pytest.raises(FileError, match=r"a\.svg: line 1: use elements multiply the drawing beyond 100000"):
+        read(path)
     long = f'<path id="a" d="M0 0{"L1 1" * 20_000}"/>'
     uses = '<use href="#a"/>' * 1000
-    refused(tmp_path, f"<svg>{long}{uses}</svg>", "line 1: use elements multiply")
+    path.write_text(f"<svg>{long}{uses}</svg>")
+    with pytest.raises(FileError, match=r"a\.svg: line 1: use elements multiply"):
+        read(path)
 
 
 N = 100_000
@@ -177,6 +180,5 @@ def test_text_that_is_slow_to_refuse_elsewhere(tmp_path: Path, element: str) -> 
 def test_style_sheets_that_are_slow_to_read_elsewhere(tmp_path: Path, part: str) -> None:
     path = tmp_path / "a.svg"
     path.write_text(f"<svg><style>{part * N}{{display:none}}</style>{LINE}</svg>")
-    start = time.perf_counter()
-    assert len(read(path)) == 1
-    assert time.perf_counter() - start < 2
+    with calls_within(2_000_000):
+        assert len(read(path)) == 1

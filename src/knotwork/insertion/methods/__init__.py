@@ -1,1 +1,1 @@
-"""Every method of knot insertion: one module a family, what they share, and the catalogue of them all."""
+"""Every method of knot insertion: one module per family, what they share, and the catalogue of them all."""
