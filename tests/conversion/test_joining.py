@@ -182,3 +182,35 @@ def test_what_is_refused():
             kw.from_pieces(*arguments, **options)
     with pytest.raises(ParameterError, match="'bezier' or 'monomial'"):
         kw.convert(kw.curve([0, 1, 3, 2.0]), "bezier", axis=0)
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-3, 1e-5])
+def test_breaks_close_together(gap):
+    """Knots that seem to be none from the short piece between them are needed by the long ones beside it."""
+    breaks = [0, 1, 1 + gap, 2 + gap]
+    space = kw.SplineSpace(6, [0] * 7 + breaks[1:-1] + [breaks[-1]] * 7)
+    for seed in (77, 1, 2):
+        c = kw.Spline(space, np.random.default_rng(seed).standard_normal((space.dimension, 2)))
+        found = kw.from_pieces(kw.convert(c, "bezier").spline, tolerance=1e-9)
+        assert found.bound <= 1e-9
+        assert found.spline.space == space
+        u = np.linspace(0, breaks[-1], 999)
+        assert abs(found.spline(u) - c(u)).max() <= 1e-9
+
+
+@settings(max_examples=30)
+@given(
+    kinds.curves(dtype=float, degrees=st.integers(1, 6)),
+    st.floats(-9, 0),
+    st.integers(0, 99),
+    st.sampled_from([None, 1e-9, 1e-3]),
+)
+def test_no_result_exceeds_its_tolerance(curve, gap, seed, tolerance):
+    """Breaks moved together: in any two neighbours, by any factor."""
+    pieces = kw.convert(curve, "bezier").spline
+    lengths = np.diff(pieces.breaks) * 10.0 ** np.where(
+        np.random.default_rng(seed).random(len(pieces.breaks) - 1) < 0.5, gap, 0
+    )
+    breaks = np.concatenate([pieces.breaks[:1], pieces.breaks[0] + np.cumsum(lengths)])
+    found = kw.from_pieces(pieces.coefficients, breaks, rational=curve.rational, tolerance=tolerance)
+    assert found.bound <= max(tolerance or 0, 2e-12 * (1 + abs(curve.points).max()))

@@ -15,7 +15,7 @@ import knotwork as kw
 import strategies as kinds
 from conversion.pairs import copies_inside, places
 from knotwork.conversion.common import common_refinement, embedding
-from knotwork.errors import ParameterError
+from knotwork.errors import ParameterError, RoundingWarning
 
 F = Fraction
 
@@ -122,3 +122,58 @@ def test_what_makes_no_sense(arguments, match):
 def test_no_times_is_no_change():
     c = kw.curve([0, 1, 3, 2.0])
     assert kw.lower(c, 0) == (c, 0, True, "lowering")
+
+
+def test_long_curves():
+    """Steps end at errors that are equal but for rounding; none of them divides by their difference."""
+    for curve in (kw.curve(np.cos(np.linspace(0, 1, 700)), 5), kw.curve(np.cos(np.linspace(0, 50, 10000)))):
+        found = kw.lower(curve)
+        u = np.linspace(0, 1, 9999)
+        assert abs(found.spline(u) - curve(u)).max() <= found.bound < 1e-3
+
+
+def test_ends_may_be_kept():
+    c = kw.curve([[0, 0], [1, 2], [3, 3], [5, 1], [6, -2], [8, 0]], 3, [0, 0, 0, 0, 1, 2, 3, 3, 3, 3])
+    free, kept = kw.lower(c), kw.lower(c, ends="keep")
+    assert kept.spline.space == free.spline.space
+    assert kept.spline.points[[0, -1]].tolist() == [[0, 0], [8, 0]]
+    assert free.bound < kept.bound < 1.2 * free.bound
+    exact = kw.lower(c.in_exact_arithmetic(), ends="keep")
+    assert exact.spline.points[[0, -1]].tolist() == [[0, 0], [8, 0]]
+    assert float(exact.bound) == pytest.approx(kept.bound, rel=1e-9)
+    assert kw.lower(kw.elevate(c), ends="keep").exact
+
+
+@settings(max_examples=20)
+@given(kinds.curves(dtype=float, degrees=st.integers(2, 4), periodic=False), st.integers(0, 1))
+def test_no_other_with_these_ends_has_a_smaller_bound(curve, times):
+    found = kw.lower(curve, 1 + times * (curve.degree[0] > 2), ends="keep")
+    target = found.spline.space
+    finer = common_refinement(curve.space, target)
+    A, d = embedding(target, finer).toarray(), embedding(curve.space, finer) @ curve.coefficients
+    rest = d - A[:, [0, -1]] @ d[[0, -1]]
+    best = max(least_maximum(A[:, 1:-1], column) for column in rest.T) if A.shape[1] > 2 else abs(rest).max()
+    assert (found.spline.coefficients[[0, -1]] == d[[0, -1]]).all()
+    assert found.bound == pytest.approx(best, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("curve", "times", "match"),
+    [
+        (kw.curve(np.zeros((6, 2)), periodic=True), 1, "a period has none"),
+        (kw.curve([0, 1, 2.0], 2), 2, "a constant"),
+    ],
+)
+def test_ends_that_cannot_be_kept(curve, times, match):
+    with pytest.raises(ParameterError, match=match):
+        kw.lower(curve, times, ends="keep")
+    with pytest.raises(ParameterError, match="ends='fix' given; expected one of 'free', 'keep'"):
+        kw.lower(curve, times, ends="fix")
+
+
+def test_a_tolerance_below_single_precision_is_said():
+    c = kw.elevate(kw.curve(np.random.default_rng(0).standard_normal((20, 2)).astype(np.float32)))
+    with pytest.warns(RoundingWarning, match="above the tolerance 1e-09"):
+        found = kw.lower(c, tolerance=1e-9)
+    assert 1e-9 < found.bound < 1e-5
+    assert kw.lower(c, tolerance=0).exact

@@ -39,11 +39,11 @@ APART = 2.0**-48
 
 
 class Difference(NamedTuple):
-    """How far two splines are apart, in each coordinate."""
+    """How far two splines are apart, in each coordinate: shape (d,)."""
 
-    #: shape (d,): nowhere further than this, whatever was rounded
+    #: nowhere further than this, whatever was rounded
     bound: Array
-    #: shape (d,): the largest coefficient of the difference as it was computed
+    #: the largest coefficient of the difference as it was computed
     found: Array
 
     @property
@@ -83,8 +83,20 @@ def difference(f: Spline, g: Spline) -> Difference:
     >>> difference(line, arch).found.tolist(), difference(line, arch).largest < 1 + 1e-14
     ([1.0], True)
     """
+    certificate, other = _over_both(f, g)
+    return certificate.difference(other)
+
+
+def coefficientwise(f: Spline, g: Spline) -> Difference:
+    """Return the same for each coefficient over the common refinement: arrays of shape (…, d)."""
+    certificate, other = _over_both(f, g)
+    return certificate.coefficientwise(other)
+
+
+def _over_both(f: Spline, g: Spline) -> tuple[Certificate, Lifted]:
+    """Return what is needed to compare two splines: both over the common refinement."""
     spaces = tuple(common_refinement(*pair) for pair in zip(f.spaces, g.spaces, strict=True))
-    return Certificate(f, spaces).difference(lifted(g, spaces))
+    return Certificate(f, spaces), lifted(g, spaces)
 
 
 def lifted(spline: Spline, spaces: Sequence[SplineSpace]) -> Lifted:
@@ -172,24 +184,25 @@ class Certificate:
 
     def difference(self, other: Lifted) -> Difference:
         """Return how far the spline and another over the same spaces are apart."""
+        return Difference(*map(largest_of, self.coefficientwise(other)))
+
+    def coefficientwise(self, other: Lifted) -> Difference:
+        """Return the same for each coefficient over the spaces, where its function lives: arrays of shape (…, d)."""
         f, g, u = self.lifted, other, self.unit
         with np.errstate(all="ignore"):  # what cannot be told is infinite
             change = g.coefficients - f.coefficients
             off = f.rounding + g.rounding
             if not self.rational:
-                found = largest_of(np.abs(change))
-                bound = found + largest_of(np.atleast_2d(off))
+                found = np.abs(change)
+                bound = found + off
             else:
                 v, least = g.coefficients[..., -1:], g.coefficients[..., -1:] - g.rounding[..., -1:]
                 moved, weights = change[..., :-1], change[..., -1:]
                 size = np.abs(moved - self.centre * weights) + self.reach * np.abs(weights)
                 more = off[..., :-1] + (np.abs(self.centre) + self.reach) * off[..., -1:]
                 more = more + 4 * u * (np.abs(moved) + np.abs(self.centre * weights))
-                found, bound = largest_of(size / v), largest_of((size + more) / least)
-                if least.min() <= 0:
-                    bound = np.full(bound.shape, np.inf)
-                if v.min() <= 0:
-                    found = bound
+                bound = np.where(least > 0, (size + more) / least, np.inf)
+                found = np.where(v > 0, size / v, np.inf)
             if u:
                 bound = bound * (1 + LAST_STEPS * u)
                 bound, found = (np.where(np.isnan(x), np.inf, x) for x in (bound, found))

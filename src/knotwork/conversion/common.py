@@ -1,4 +1,4 @@
-"""What holds two spline spaces: the smallest space above both, the way up to it, and differences measured there."""
+"""What holds two spline spaces: the smallest space above both, and the way up to it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from knotwork.insertion.merge import rows_of_matrix
 from knotwork.knots import combine, distinct, merged, multiplicities
 from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
 
 
 def breaks_and_copies(space: SplineSpace) -> tuple[Array, Array]:
@@ -97,27 +96,5 @@ def product(A: Banded, B: Banded) -> Banded:
         for s in range(of_b):
             E[np.arange(rows), (offset[:, r] + s) % B.columns] += A.entries[:, r] * B.entries[used[:, r], s]
     first = B.first[used[:, 0]].copy()
-    return Banded(first, E, B.columns)
-
-
-def difference(f: Spline, g: Spline) -> Any:
-    """Return the largest coefficient of f − g on the common refinement in every parameter: it bounds |f − g|.
-
-    Of rational splines A/w and B/v, the difference is ((B − A) − f·(v − w)) / v, taken about the middle of the points
-    of f, so that |f| is at most half their extent; infinite if a weight v is not positive.
-    """
-    F, G = f.coefficients, g.coefficients
-    for axis, (space, other) in enumerate(zip(f.spaces, g.spaces, strict=True)):
-        finer = common_refinement(space, other)
-        F, G = embedding(space, finer).apply(F, axis), embedding(other, finer).apply(G, axis)
-    with np.errstate(over="ignore"):
-        change = G - F
-    if not f.rational:
-        return np.abs(change).max(keepdims=True).item()
-    v, points = G[..., -1], f.points.reshape(-1, f.dim)
-    if v.min() <= 0:
-        return float("inf")
-    low, high = points.min(axis=0), points.max(axis=0)
-    centre, reach = low + (high - low) / 2, (high - low) / 2
-    dw = change[..., -1:]
-    return ((np.abs(change[..., :-1] - centre * dw) + reach * np.abs(dw)).max(keepdims=True) / v.min()).item()
+    wraps = A.wraps or B.wraps
+    return Banded.packed(first, np.full(rows, E.shape[1] - 1), E, B.columns, wraps)

@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, real_numbers, require_finite
+from knotwork.arithmetic.arrays import Array, exact, require_finite
+from knotwork.conversion.certificate import Difference, difference, rounding
 from knotwork.conversion.chebyshev import chebyshev
-from knotwork.conversion.common import common_refinement, difference, embedding, holds
+from knotwork.conversion.common import common_refinement, embedding, holds
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.conversion.polynomials import BASES, to_pieces
@@ -61,9 +62,9 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
     -------
     Conversion
         ``spline``, ``bound``, ``exact`` and ``how``. The bound is the largest coefficient of the difference on the
-        common refinement, which bounds the difference everywhere; for a rational spline, the bound that follows from it
-        for the points. ``exact`` is true if the target holds the space, or if the bound is 0; in float arithmetic, if
-        it is no larger than rounding explains, 8 (degree + 1) ε max |coordinate|.
+        common refinement, which bounds the difference everywhere, rounding included; for a rational spline, the bound
+        that follows from it for the points. ``exact`` is true if the target holds the space, or if the bound is 0; in
+        float arithmetic, if what is found of it is no larger than rounding explains, 8 (degree + 1) ε max |coordinate|.
 
     Raises
     ------
@@ -88,7 +89,7 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
     ([0.0, 1.0, 3.0, 4.0], True, 'oslo')
     """
     if isinstance(target, str) and target in BASES and axis is None:
-        return Conversion(to_pieces(spline, target), 0 * rounding(spline), True, target)
+        return Conversion(to_pieces(spline, target), 0 * abs(spline.coefficients.flat[0]), True, target)
     targets = _targets(spline, target, axis)
     if not isinstance(how, str) or how not in WAYS:
         raise ParameterError(f"how={how!r} given; expected one of {', '.join(map(repr, WAYS))}")
@@ -105,37 +106,32 @@ def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = 
         if space != spline.spaces[i]:
             result, used[i] = _along_axis(result, i, space, how)
     ways = tuple(dict.fromkeys(used.values()))
-    return concluded(spline, result, ways[0] if len(ways) == 1 else tuple(used.values()) or "oslo")
+    way = ways[0] if len(ways) == 1 else tuple(used.values()) or "oslo"
+    return concluded(spline, result, way, measured(spline, result))
 
 
-def concluded(spline: Spline, result: Spline, how: Any) -> Conversion:
-    """Return the result of a conversion with what it lost, or raise if a float or a weight is not what it must be."""
+def measured(spline: Spline, result: Spline) -> Difference:
+    """Return what a conversion changed, or raise if a float or a weight is not what it must be."""
     require_finite(result.coefficients, "converted coefficients", PointError)
     if result.rational and result.coefficients[..., -1].min() <= 0:
         raise PointError(
             f"a weight of the result would be {result.coefficients[..., -1].min()}; expected positive ones"
         )
-    if all(holds(new, old) for new, old in zip(result.spaces, spline.spaces, strict=True)):
-        return Conversion(result, 0 * abs(spline.coefficients.flat[0]), True, how)
-    bound = difference(spline, result)
-    return Conversion(result, bound, bool(bound <= rounding(spline)), how)
+    if result is spline or (spline.coefficients.dtype == object and nested(spline, result)):
+        none = 0 * rounding(spline)
+        return Difference(none, none)
+    return difference(spline, result)
 
 
-def rounding(spline: Spline) -> Any:
-    """Return what rounding explains: 8 (degree + 1) ε max |coordinate|, or 0 in exact arithmetic."""
-    points = spline.points
-    if points.dtype == object:
-        return 0
-    return 8 * (max(spline.degree) + 1) * np.finfo(points.dtype).eps * np.abs(points).max()
+def concluded(spline: Spline, result: Spline, how: Any, change: Difference) -> Conversion:
+    """Return the result of a conversion with what it changed."""
+    exact = nested(spline, result) or bool((change.found <= rounding(spline)).all())
+    return Conversion(result, change.largest, exact, how)
 
 
-def tolerance_of(spline: Spline, tolerance: Any) -> Any:
-    """Return a tolerance as a number of at least what rounding explains, or raise."""
-    given = real_numbers(tolerance, "tolerance", ParameterError)
-    given = in_arithmetic_of(spline.coefficients, given, "tolerance", ParameterError)
-    if given.ndim or given < 0:
-        raise ParameterError(f"tolerance {tolerance} given; expected a number of at least 0")
-    return max(given.item(), rounding(spline))
+def nested(spline: Spline, result: Spline) -> bool:
+    """Tell whether the spaces of the result hold those of the spline."""
+    return all(holds(new, old) for new, old in zip(result.spaces, spline.spaces, strict=True))
 
 
 def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineSpace]:
@@ -178,7 +174,7 @@ def _along_axis(spline: Spline, axis: int, target: SplineSpace, how: str) -> tup
         matrix = conversion_matrix(step.spaces[axis], target)
         found = _applied(matrix, step, axis, target)
         small = np.abs(matrix.entries).sum(axis=1).max() <= SMALL
-        if how == "oslo" or small or (space.exact and difference(spline, found) == 0):
+        if how == "oslo" or small or (space.exact and difference(spline, found).largest == 0):
             return found, "oslo"
     return by_least_squares(spline, axis, target), "least-squares"
 
@@ -188,8 +184,8 @@ def _applied(matrix: Banded, spline: Spline, axis: int, target: SplineSpace) -> 
     return spline.with_axis(axis, target, matrix.apply(spline.coefficients, axis))
 
 
-def by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
-    """Minimise ‖W (A b − c)‖₂ on the common refinement, W = diag √(t[i+n+1] − t[i])."""
+def by_least_squares(spline: Spline, axis: int, target: SplineSpace, ends: str = "free") -> Spline:
+    """Minimise ‖W (A b − c)‖₂ on the common refinement, W = diag √(t[i+n+1] − t[i]); ends may be kept."""
     space = spline.spaces[axis]
     finer = common_refinement(space, target)
     c = embedding(space, finer).apply(spline.coefficients, axis)
@@ -200,10 +196,12 @@ def by_least_squares(spline: Spline, axis: int, target: SplineSpace) -> Spline:
     if not target.exact:
         weight = weight / weight.max()
 
+    kept = {0: 0, target.dimension - 1: rows - 1} if ends == "keep" else {}
+
     def solution(y: Array) -> Array:
-        b = least_squares(A, weight, y)
+        b = least_squares(A, weight, y, kept)
         # rotations of many rows add up their rounding: what they leave is fitted once more
-        return b if b.dtype == object else b + least_squares(A, weight, y - A.apply(b, 0))
+        return b if b.dtype == object else b + least_squares(A, weight, y - A.apply(b, 0), kept)
 
     return solved(spline, axis, target, c, solution)
 

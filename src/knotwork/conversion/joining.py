@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, numbers, require_finite, whole
-from knotwork.conversion.common import space_over
-from knotwork.conversion.convert import Conversion, convert, tolerance_of
+from knotwork.conversion.certificate import Tolerance, coefficientwise
+from knotwork.conversion.common import common_refinement, space_over
+from knotwork.conversion.convert import Conversion, convert, measured
 from knotwork.conversion.polynomials import PolynomialPieces, nets_of
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import from_bezier
@@ -84,25 +85,45 @@ def from_pieces(
     spline = from_bezier(nets_of(given), given.breaks, given.rational)
     if periodic:
         spline = _closed(spline)
-    allowed = tolerance_of(spline, 0 if tolerance is None else tolerance)
+    allowed = Tolerance(spline, 0 if tolerance is None else tolerance)
     if smoothness is not None:
-        found = convert(
-            spline, [_smooth(s, o) for s, o in zip(spline.spaces, _orders(spline, smoothness), strict=True)]
-        )
-        if tolerance is not None and found.bound > allowed:
-            raise ParameterError(
-                f"smoothness {smoothness} would change the pieces by up to {float(found.bound):.6g}; tolerance "
-                f"{tolerance} given"
-            )
+        orders = _orders(spline, smoothness)
+        found = convert(spline, [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)])
+        if tolerance is not None:
+            allowed.require(measured(spline, found.spline), f"smoothness {smoothness}")
         return found
+    most = allowed.allowed.max()
     for share in SHARES:
-        orders = [_found(spline, axis, share * allowed) for axis in range(len(spline.spaces))]
-        spaces = [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)]
+        orders = [_found(spline, axis, share * most) for axis in range(len(spline.spaces))]
         for how in ("auto", "least-squares"):
-            found = convert(spline, spaces, how=how)
-            if found.bound <= allowed:
+            found = convert(spline, [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)], how=how)
+            change = measured(spline, found.spline)
+            if allowed.admits(change):
+                allowed.require(change, "joining")
                 return found
+    while not allowed.admits(change):
+        orders = [_less(spline, found.spline, axis, o, allowed) for axis, o in enumerate(orders)]
+        found = convert(spline, [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)])
+        change = measured(spline, found.spline)
+    allowed.require(change, "joining")
     return found
+
+
+def _less(spline: Spline, result: Spline, axis: int, orders: Array, allowed: Tolerance) -> Array:
+    """Return less smoothness at the breaks of one parameter near which a result is too far off: twice the knots."""
+    space = spline.spaces[axis]
+    bound, found = coefficientwise(spline, result)
+    above = (bound > allowed.given) & (found > allowed.rounding)
+    far: Array = np.moveaxis(above, axis, 0).reshape(above.shape[axis], -1).any(axis=1).astype(bool)
+    t, zero = common_refinement(space, result.spaces[axis]).unrolled
+    first, last = t[zero : zero + len(far)][far], t[zero + space.order :][: len(far)][far]
+    x = _breaks(space)
+    near = np.zeros(len(x), bool)
+    for turn in (0, 1) if space.periodic else (0,):
+        y = x + turn * (space.domain[1] - space.domain[0])
+        near |= np.searchsorted(first, y, "right") > np.searchsorted(last, y, "left")
+    copies = space.degree - orders
+    return np.where(near, np.maximum(space.degree - np.maximum(2 * copies, 1), -1), orders)
 
 
 def _given(pieces: Any, breaks: Any, basis: str, rational: bool) -> PolynomialPieces:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, whole
+from knotwork.conversion.certificate import Tolerance
 from knotwork.conversion.common import breaks_and_copies, common_refinement, embedding, space_over
-from knotwork.conversion.convert import Conversion, by_least_squares, concluded, solved, tolerance_of
+from knotwork.conversion.convert import Conversion, by_least_squares, concluded, measured, solved
 from knotwork.errors import ParameterError
 from knotwork.linear.banded import Banded
 from knotwork.linear.least_squares import least_squares
@@ -19,9 +20,12 @@ from knotwork.spline import Spline
 STEPS = 60
 #: gap between what is reached and what is possible, relative to the error
 GAP = 1e-12
+#: distance from the largest error, relative to it, that is not told from none: some roundings
+TOUCHING = 2.0**-50
+ENDS = ("free", "keep")
 
 
-def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None) -> Conversion:
+def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None, *, ends: str = "free") -> Conversion:
     """Return the best spline with the degree in one parameter lowered; every break loses as many knots, but keeps one.
 
     Parameters
@@ -31,21 +35,30 @@ def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None) 
     axis : int
         Which parameter.
     tolerance : float, optional
-        Largest change allowed, in the units of the points. In float arithmetic, one below the rounding error of the
-        control points, 8 (degree + 1) ε max |coordinate|, counts as that error. Without it, anything goes.
+        Largest change allowed, in the units of the points. In float arithmetic, a change that rounding of the control
+        points explains, 8 (degree + 1) ε max |coordinate|, is always allowed. Without it, anything goes.
+    ends : {"free", "keep"}
+        Whether the ends move as it suits the rest, or stay where they are.
 
     Returns
     -------
     Conversion
         ``spline``, ``bound``, ``exact`` and ``how``. The bound is the largest coefficient of the difference on the
-        common refinement. In each coordinate (homogeneous, if rational) no spline over these knots has a smaller one.
+        common refinement, rounding included. In each coordinate (homogeneous, if rational) no spline over these knots,
+        with these ends if they are kept, has a smaller one.
 
     Raises
     ------
     ParameterError
-        If the degree is not as high as `times`, or the bound would be above the tolerance.
+        If the degree is not as high as `times`, the bound would be above the tolerance, or a period has no ends, or a
+        constant cannot keep both.
     PointError
         If a rational spline would get a weight that is not positive.
+
+    Warns
+    -----
+    RoundingWarning
+        If the tolerance is below what rounding admits; the message names the bound.
 
     Notes
     -----
@@ -58,41 +71,60 @@ def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None) 
     >>> cubic = kw.curve([1, 1, 1, 9])
     >>> round(kw.lower(cubic).bound, 9), kw.lower(kw.elevate(cubic)).spline.points.round(9).tolist()
     (1.0, [1.0, 1.0, 1.0, 9.0])
+    >>> kw.lower(cubic, ends="keep").spline.points.round(9).tolist()
+    [1.0, -1.0, 9.0]
     """
     axis = spline.axis(axis)
     times = whole(times, "times", 0, ParameterError)
     space = spline.spaces[axis]
     if times > space.degree:
         raise ParameterError(f"times {times} given; expected at most the degree, {space.degree}")
-    allowed = None if tolerance is None else tolerance_of(spline, tolerance)
-    if not times:
-        return concluded(spline, spline, "lowering")
-    values, copies = breaks_and_copies(space)
-    target = space_over(space.degree - times, space.domain, values, np.maximum(copies - times, 1), space.periodic)
-    found = concluded(spline, by_least_squares(spline, axis, target), "lowering")
-    if not found.exact:
-        found = concluded(spline, _best(spline, axis, target), "lowering")
-    if allowed is not None and found.bound > allowed:
-        raise ParameterError(
-            f"degree {target.degree} would change the spline by up to {float(found.bound):.6g}; tolerance {tolerance} "
-            f"given"
-        )
-    return found
+    if not isinstance(ends, str) or ends not in ENDS:
+        raise ParameterError(f"ends={ends!r} given; expected one of {', '.join(map(repr, ENDS))}")
+    allowed = None if tolerance is None else Tolerance(spline, tolerance)
+    result, change = spline, measured(spline, spline)
+    if times:
+        values, copies = breaks_and_copies(space)
+        target = space_over(space.degree - times, space.domain, values, np.maximum(copies - times, 1), space.periodic)
+        if ends == "keep" and (space.periodic or target.dimension == 1):
+            raise ParameterError(
+                f"ends='keep' given; {'a period has none' if space.periodic else 'a constant has one'}"
+            )
+        result = by_least_squares(spline, axis, target, ends)
+        change = measured(spline, result)
+        if not concluded(spline, result, "", change).exact:
+            result = _best(spline, axis, target, ends)
+            change = measured(spline, result)
+    if allowed is not None:
+        allowed.require(change, f"degree {result.degree[axis]}")
+    return concluded(spline, result, "lowering", change)
 
 
-def _best(spline: Spline, axis: int, target: SplineSpace) -> Spline:
+def _best(spline: Spline, axis: int, target: SplineSpace, ends: str) -> Spline:
     """Return the spline over `target` with the smallest largest coefficient of the difference in each coordinate."""
     space = spline.spaces[axis]
     finer = common_refinement(space, target)
     A = embedding(target, finer)
     d = embedding(space, finer).apply(spline.coefficients, axis)
+    places = [0, -1] if ends == "keep" else []
 
     def solution(y: Array) -> Array:
-        rows = Banded(A.first.copy(), A.entries.astype(np.float64), A.columns)
-        c = np.stack([minimax(rows, column) for column in y.astype(np.float64).T], axis=1)
-        return exact(c, "coefficients", ParameterError) if y.dtype == object else c
+        fixed = np.zeros((A.columns, y.shape[1]))
+        fixed[places] = y[places].astype(np.float64)
+        rows = Banded(A.first.copy(), _without(A, places), A.columns)
+        rest = y.astype(np.float64) - Banded(A.first.copy(), A.entries.astype(np.float64), A.columns).apply(fixed, 0)
+        c = fixed + np.stack([minimax(rows, np.ascontiguousarray(column)) for column in rest.T], axis=1)
+        c = exact(c, "coefficients", ParameterError) if y.dtype == object else c
+        c[places] = y[places]
+        return c
 
     return solved(spline, axis, target, d, solution)
+
+
+def _without(A: Banded, places: list[int]) -> Array:
+    """Return the entries of a matrix in floats, those in some columns 0."""
+    columns = (A.first[:, None] + np.arange(A.entries.shape[1])) % A.columns
+    return np.where(np.isin(columns, np.array(places, int) % A.columns), 0.0, A.entries.astype(np.float64))
 
 
 def minimax(A: Banded, d: Array) -> Array:
@@ -100,7 +132,7 @@ def minimax(A: Banded, d: Array) -> Array:
 
     The linear programme: the least e with −e ≤ d − A c ≤ e. Its duals p, q ≥ 0 have Aᵀ(p − q) = 0 and Σ(p + q) = 1.
     With r = d − A c, each step aims, by weighted least squares, at p_i (e − r_i) = q_i (e + r_i) = a tenth of what they
-    are now on average; their sum is the gap to the optimum.
+    are now on average; their sum is the gap to the optimum. Where e − r_i is down to rounding, no step is better.
     """
     c: Array = least_squares(A, np.ones(len(d)), d[:, None])[:, 0]
     r = d - A @ c
@@ -113,7 +145,7 @@ def minimax(A: Banded, d: Array) -> Array:
     for _ in range(STEPS):
         above, below = e - r, e + r
         gap = p @ above + q @ below
-        if gap <= GAP * e:
+        if gap <= GAP * e or min(above.min(), below.min()) <= TOUCHING * e:
             break
         weight, lean = p / above + q / below, p / above - q / below
         mean = 0.1 * gap / (2 * len(d))

@@ -29,6 +29,8 @@ def triangularise(first, X, weight, y, R, D, z, x, p):
             if w == 0 or xk == 0:
                 continue
             d = D[k] + w * xk * xk
+            if d == 0:  # too small for a number
+                continue
             keep, mix = D[k] / d, w * xk / d
             D[k] = d
             w = w * keep
