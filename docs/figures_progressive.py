@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from knotwork.progressive import FIGURES, figure
+from knotwork.diagrams import figure
+from knotwork.diagrams.progressive_figures import FIGURES
 
 IMAGES = Path(__file__).with_name("images") / "progressive"
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from knotwork import arithmetic as arithmetic
+    from knotwork import diagrams as diagrams
     from knotwork import progressive as progressive
     from knotwork import stability as stability
     from knotwork.conversion import Conversion, PolynomialPieces, elevate, from_pieces, lower
@@ -35,6 +36,7 @@ __all__ = [
     "clamp",
     "convert",
     "curve",
+    "diagrams",
     "elevate",
     "from_bezier",
     "from_pieces",
@@ -58,6 +60,7 @@ __all__ = [
 _PARTS = {
     "arithmetic": (),
     "conversion": ("Conversion", "PolynomialPieces", "convert", "elevate", "from_pieces", "lower"),
+    "diagrams": (),
     "files": ("Written", "read", "write"),
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),

@@ -104,7 +104,7 @@ def basis(t, K, R, span, u, E):
 
 @kernel
 def contract(base, offset, w, P, out, D):
-    """out[i] = Σ_l w[i, l] · P[base[i] + offset[l]]: one point of a tensor product a row."""
+    """out[i] = Σ_l w[i, l] · P[base[i] + offset[l]]: one point of a tensor product per row."""
     for i in range(len(base)):
         for c in range(len(D)):
             total = w[i, 0] * P[base[i] + offset[0], c]
@@ -224,7 +224,7 @@ def _contract(P: Array, counts: tuple[int, ...], rows: list[tuple[Array, Array]]
 
 
 def on_grid(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Array], order: int) -> Array:
-    """Return all derivatives up to an order at all combinations of flat parameter arrays: a banded matrix an axis."""
+    """Return all derivatives up to an order at all combinations of flat parameter arrays: a banded matrix per axis."""
     if any(v.ndim != 1 for v in x):
         raise ParameterError(f"grid=True takes flat arrays; parameters of shapes {[v.shape for v in x]} given")
     k = len(spaces)

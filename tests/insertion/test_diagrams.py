@@ -14,9 +14,11 @@ import pytest
 
 import knotwork as kw
 import oracle
+from knotwork.diagrams import diagram, figure
 from knotwork.diagrams.insertion import DRAWN
+from knotwork.diagrams.insertion_figures import FIGURES
 from knotwork.errors import KnotError, ParameterError
-from knotwork.insertion import FIGURES, METHODS, count, diagram, figure
+from knotwork.insertion import METHODS, count
 
 IMAGES = Path(__file__).parents[2] / "docs" / "images" / "insertion"
 NAME = r"[a-z](?:[₀-₉]+|_\{[^}]*\})?"

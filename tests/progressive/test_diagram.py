@@ -14,14 +14,15 @@ import pytest
 
 import oracle
 from knotwork.arithmetic.counting import Counting, counting
+from knotwork.diagrams import SCHEMES, diagram, figure
 from knotwork.diagrams.drawing import Box
 from knotwork.diagrams.layout import Layout
 from knotwork.diagrams.lettering import parts, width
-from knotwork.diagrams.progressive import SCHEMES
+from knotwork.diagrams.progressive_figures import FIGURES
 from knotwork.diagrams.recording import combined, given
 from knotwork.diagrams.symbols import Expression, knot, knots
 from knotwork.errors import KnotError, ParameterError
-from knotwork.progressive import DELTA, FIGURES, METHODS, Curve, change_basis, diagram, figure
+from knotwork.progressive import DELTA, METHODS, Curve, change_basis
 
 UPWARD = [name for name, scheme in SCHEMES.items() if not scheme.downward]
 SVG = "{http://www.w3.org/2000/svg}"
@@ -102,7 +103,7 @@ def test_each_combination_of_a_figure_holds(number):
 
 
 def test_any_knots_and_arguments():
-    scheme = diagram("boehm", 4, knots=[0, 0, "x", 1, 2, "y", 3, "δ"], arguments=["c", "δ", 5])
+    scheme = diagram("knot", 4, knots=[0, 0, "x", 1, 2, "y", 3, "δ"], arguments=["c", "δ", 5])
     require_true(scheme, 4)
     assert {"2 − c", "c", "−1", "−3", "4"} <= {edge.label for edge in scheme.edges}  # -3 = 2 - 5 and 4 = 5 - 1
     assert diagram("de boor", 1, knots=[(1, 2), ("x", "y")]).edges[0].label == "x − ty"
@@ -113,11 +114,10 @@ def test_two_edges_for_each_combination(degree):
     t = [Fraction(x) for x in range(2 * degree)]
     u = [x + Fraction(1, 3) for x in t]
     curve = Curve(t, Counting.array(range(degree + 1)))
-    drawn = {"boehm": "boehm-change"}
     for method in METHODS:
         with counting() as counts:
             change_basis(curve, u, method)
-        assert len(diagram(drawn.get(method, method), degree).edges) == 2 * counts.combinations
+        assert len(diagram(f"{method}-change", degree).edges) == 2 * counts.combinations
     with counting() as counts:
         curve(Fraction(1, 2))
     assert len(diagram("de boor", degree).edges) == len(diagram("basis", degree).edges) == 2 * counts.combinations
@@ -449,7 +449,7 @@ def test_expressions():
         (lambda: diagram("de boor", 0), ParameterError, "degree 0 given"),
         (lambda: diagram("de boor", 2, knots="abc"), KnotError, "3 knots given; expected 4"),
         (lambda: diagram("blossom", 2, arguments=["u"]), KnotError, "1 arguments given; expected 2"),
-        (lambda: diagram("boehm", 2, arguments=["u"] * 3), KnotError, "expected 1 … 2"),
+        (lambda: diagram("knot", 2, arguments=["u"] * 3), KnotError, "expected 1 … 2"),
         (lambda: diagram("de boor", 2, knots=[0, 1, 0, 2]), KnotError, "0 and 0 cannot give way to t"),
         (lambda: diagram("de boor", 1, knots=[(1, 2), (2, 4)]), KnotError, "expected knots that differ"),
         (lambda: diagram("de boor", 1, knots=[0, (0, 0)]), KnotError, "neither a number nor a vector"),
@@ -457,7 +457,7 @@ def test_expressions():
         (lambda: diagram("de boor", 1, knots=[0, np.nan]), KnotError, "expected a name, a real number"),
         (lambda: diagram("de boor", 1, knots=["t + u", 0]), KnotError, "'t + u' given; expected a letter"),
         (lambda: diagram("de boor", 1, knots=["", 0]), KnotError, "'' given; expected a letter"),
-        (lambda: diagram("goldman", 1, knots=[0, 1], arguments=[2, 0]), KnotError, "method 'goldman'"),
+        (lambda: diagram("goldman-change", 1, knots=[0, 1], arguments=[2, 0]), KnotError, "method 'goldman'"),
         (lambda: figure("3.1"), ParameterError, "'3.1' given; expected one of 1.1"),
     ],
 )

@@ -1,5 +1,7 @@
 """Diagrams of schemes, tetrahedra and methods of insertion, drawn by the procedures themselves."""
 
 from knotwork.diagrams.drawing import Diagram
+from knotwork.diagrams.face import FIGURES, diagram, figure
+from knotwork.diagrams.progressive import SCHEMES
 
-__all__ = ["Diagram"]
+__all__ = ["FIGURES", "SCHEMES", "Diagram", "diagram", "figure"]

@@ -93,7 +93,7 @@ class Diagram:
 
     Examples
     --------
-    >>> from knotwork.progressive import diagram
+    >>> from knotwork.diagrams import diagram
     >>> scheme = diagram("de boor", degree=2)
     >>> [node.text for node in scheme.nodes]
     ['t₁ t₂', 't₂ t₃', 't₃ t₄', 't₂ t', 't t₃', 't t']

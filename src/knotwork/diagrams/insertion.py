@@ -108,7 +108,9 @@ def _left_to_right(values: Iterable[Value]) -> list[Value]:
     return [value for run in runs for value in reversed(run)]
 
 
-def diagram(method: str, degree: int = 3, *, new: int | None = None, knots: Iterable[str] | None = None) -> Diagram:
+def method_diagram(
+    method: str, degree: int = 3, *, new: int | None = None, knots: Iterable[str] | None = None
+) -> Diagram:
     """Draw the scheme of a method of knot insertion, from the method itself: it runs over knots that are names.
 
     A node shows its blossom arguments. The arrows into a node carry the factors of the two points that it is combined
@@ -141,7 +143,7 @@ def diagram(method: str, degree: int = 3, *, new: int | None = None, knots: Iter
 
     Examples
     --------
-    >>> scheme = diagram("boehm", 2, new=1)
+    >>> scheme = method_diagram("boehm", 2, new=1)
     >>> [node.text for node in scheme.nodes if node.kind == "result"]
     ['t₂ u₁', 'u₁ t₃']
     >>> [edge.label for edge in scheme.edges]

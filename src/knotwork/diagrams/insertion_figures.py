@@ -10,11 +10,11 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.diagrams.drawing import LESSER, Diagram, Edge, Node
 from knotwork.diagrams.duality import differencing, duality
-from knotwork.diagrams.insertion import FACTORED, Scheme, diagram, scheme_of, symbols
+from knotwork.diagrams.insertion import FACTORED, Scheme, method_diagram, scheme_of, symbols
 from knotwork.diagrams.layout import Spot
 from knotwork.diagrams.lettering import width
 from knotwork.diagrams.picture import arguments, picture
-from knotwork.diagrams.progressive_figures import Figure, numbered
+from knotwork.diagrams.progressive_figures import Figure
 from knotwork.diagrams.recording import Value, given, recording
 from knotwork.diagrams.spacing import evenly_spaced
 from knotwork.diagrams.symbols import Knot, knots, label, names
@@ -214,7 +214,7 @@ FIGURES = {
     ),
     "3.9": Figure("The start-up of two neighbouring intervals; L and R have it alone.", overlap),
     "3.10": Figure("Evenly spaced knots 0, h, 2h, …: three rounds, and then additions alone.", evenly_spaced),
-    "4.1": Figure("Boehm's algorithm: one knot.", lambda: diagram("boehm", new=1)),
+    "4.1": Figure("Boehm's algorithm: one knot.", lambda: method_diagram("boehm", new=1)),
     "4.2": Figure("The Oslo algorithm: one vertex.", lambda: vertex(_U[:3])),
     "4.3": Figure(
         "Sablonnière's algorithm: all vertices of a segment.", lambda: _picture(*segment(sablonniere.whole_tetrahedron))
@@ -222,8 +222,8 @@ FIGURES = {
     "4.4": Figure(
         "Where the Oslo algorithm wastes work: old knots t₄ and t₅ are put in.", lambda: vertex(["u₁", "t₄", "t₅"])
     ),
-    "4.5": Figure("Goldman's version: two triangles for four knots.", lambda: diagram("goldman")),
-    "4.6": Figure("Goldman's version for two knots.", lambda: diagram("goldman", new=2)),
+    "4.5": Figure("Goldman's version: two triangles for four knots.", lambda: method_diagram("goldman")),
+    "4.6": Figure("Goldman's version for two knots.", lambda: method_diagram("goldman", new=2)),
     "4.7": Figure(
         "Goldman's modified version: two triangles for a segment.", lambda: _picture(*segment(two_triangles))
     ),
@@ -239,29 +239,3 @@ FIGURES = {
     "4.14": Figure("Goldman's version, factored.", lambda: of_method("goldman-factored", (1, 2), _T[:3] + _U + _T[3:])),
     "4.15": Figure("A row of the matrix: an Oslo triangle from the top down.", matrix_row),
 }
-
-
-def figure(number: str) -> Diagram:
-    """Draw a figure of chapter 3 or 4 of the book, by its number, from the method that it shows.
-
-    Knots are t₁ … t₆, new ones go between t₃ and t₄, or s₁, s₂, …, old and new in one order. What is read from the
-    methods is the schemes; divided differences (3.1, and the upper halves of 3.6 and 3.7) are made for the picture.
-
-    Parameters
-    ----------
-    number : str
-        "3.1" … "3.10", "4.1" … "4.15"; `FIGURES` has their captions.
-
-    Raises
-    ------
-    ParameterError
-        If there is no such figure.
-
-    Examples
-    --------
-    >>> figure("4.1").title
-    "Fig. 4.1. Boehm's algorithm: one knot."
-    >>> [edge.label for edge in figure("4.12").edges]
-    ['1', 's₄ − s₁', '1', 's₄ − s₂', '1', 's₄ − s₃']
-    """
-    return numbered(FIGURES, number)

@@ -126,12 +126,12 @@ SCHEMES = {
     "de boor": Scheme("The de Boor algorithm", apex, _T, _AT_T),
     "blossom": Scheme("The blossom at any arguments", apex, _T, lambda n: names("u", 1, n)),
     "basis": Scheme("The basis functions, from the top down", basis, _T, _AT_T, downward=True),
-    "boehm": Scheme("Boehm's knot insertion", edges, _T, lambda n: ["u"], partial=True),
+    "knot": Scheme("Boehm's knot insertion", edges, _T, lambda n: ["u"], partial=True),
     "boehm-change": Scheme(f"{_CHANGE}, one knot at a time: Boehm", procedures.boehm, _T, _U),
-    "goldman": Scheme(f"{_CHANGE}: Goldman's version of the Oslo algorithm", procedures.goldman, _T, _U),
-    "oslo": Scheme(f"{_CHANGE}: the Oslo algorithm", procedures.oslo, _T, _U),
-    "sablonniere": Scheme(f"{_CHANGE}: Sablonnière's tetrahedron", procedures.sablonniere, _T, _U, face=True),
-    "sablonniere-recursive": Scheme(
+    "goldman-change": Scheme(f"{_CHANGE}: Goldman's version of the Oslo algorithm", procedures.goldman, _T, _U),
+    "oslo-change": Scheme(f"{_CHANGE}: the Oslo algorithm", procedures.oslo, _T, _U),
+    "sablonniere-change": Scheme(f"{_CHANGE}: Sablonnière's tetrahedron", procedures.sablonniere, _T, _U, face=True),
+    "sablonniere-recursive-change": Scheme(
         f"{_CHANGE}: what is needed of Sablonnière's tetrahedron", procedures.sablonniere_recursive, _T, _U
     ),
     "derivative": Scheme("The first derivative", apex, _T, lambda n: ["δ", *["t"] * (n - 1)]),
@@ -146,7 +146,7 @@ SCHEMES = {
 }
 
 
-def diagram(
+def procedure_diagram(
     procedure: str,
     degree: int = 3,
     *,
@@ -162,14 +162,15 @@ def diagram(
     Parameters
     ----------
     procedure : str
-        "de casteljau", "de boor", "blossom", "boehm" (knot insertion), "derivative", "boehm-derivative", "matching";
-        the changes of basis "boehm-change", "goldman", "oslo", "sablonniere", "sablonniere-recursive"; top down
-        "basis" and "integration"; by basis "monomial", "power", "newton-dual", "pascal", "differencing".
+        "de casteljau", "de boor", "blossom", "knot" (Boehm's insertion of one), "derivative", "boehm-derivative",
+        "matching"; the changes of basis, "boehm-change", "goldman-change", "oslo-change", "sablonniere-change",
+        "sablonniere-recursive-change"; top down "basis" and "integration"; by basis "monomial", "power",
+        "newton-dual", "pascal", "differencing".
     degree : int
         At least 1.
     knots, arguments : iterable of names, numbers, "δ" and pairs of these, optional
         Other knots and blossom arguments than those usual for the procedure: 2n knots, and 2n + 1 for "matching";
-        n arguments; for "boehm" up to n, and for a change of basis 2n, which are the new knots. For "integration" n is
+        n arguments; for "knot" up to n, and for a change of basis 2n, which are the new knots. For "integration" n is
         the degree of the integral.
     homogeneous : bool
         Whether the usual knots are homogeneous: t₁ is (t₁, w₁), written t̂₁, and u₁ is (u₁, v₁).
@@ -181,20 +182,16 @@ def diagram(
 
     Raises
     ------
-    ParameterError
-        If there is no such procedure.
     KnotError
         If the number of knots or arguments is wrong, or the knots are not progressive.
 
     Examples
     --------
-    >>> [str(edge.label) for edge in diagram("de casteljau", 1, arguments=["a"]).edges]
+    >>> [str(edge.label) for edge in procedure_diagram("de casteljau", 1, arguments=["a"]).edges]
     ['1 − a', 'a']
-    >>> [edge.label for edge in diagram("de boor", 1, knots=["a", "δ"]).edges]
+    >>> [edge.label for edge in procedure_diagram("de boor", 1, knots=["a", "δ"]).edges]
     ['1', 't − a']
     """
-    if procedure not in SCHEMES:
-        raise ParameterError(f"procedure {procedure!r} given; expected one of {', '.join(SCHEMES)}")
     scheme = SCHEMES[procedure]
     n = whole(degree, "degree", 1, ParameterError) + scheme.raised
     t = _taken(knots, scheme.knots(n), "knots", procedure, homogeneous)

@@ -13,7 +13,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.diagrams.drawing import LESSER, Box, Diagram, Edge, Node, Path
 from knotwork.diagrams.lettering import HEIGHT, width
-from knotwork.diagrams.progressive import diagram
+from knotwork.diagrams.progressive import procedure_diagram as diagram
 from knotwork.diagrams.recording import Value, given, recording
 from knotwork.diagrams.symbols import knots, label, names
 from knotwork.errors import ParameterError
@@ -160,14 +160,14 @@ FIGURES = {
     "2.1": Figure("The de Boor algorithm for a cubic.", lambda: diagram("de boor")),
     "2.2": Figure("The Cox–de Boor–Mansfield recurrence for the cubic basis functions.", lambda: diagram("basis")),
     "2.3": Figure("The blossom of a cubic at any arguments.", lambda: diagram("blossom")),
-    "2.4": Figure("Goldman's version of the Oslo algorithm: two triangles.", lambda: diagram("goldman")),
+    "2.4": Figure("Goldman's version of the Oslo algorithm: two triangles.", lambda: diagram("goldman-change")),
     "2.5a": Figure(
         "Sablonnière's tetrahedron from above: up the lateral face (red), then parallel to the base.",
         lambda: tetrahedron(3),
     ),
     "2.5b": Figure(
         "Sablonnière's tetrahedron for a cubic: the lateral face, the base, and the sections parallel to the base.",
-        lambda: diagram("sablonniere"),
+        lambda: diagram("sablonniere-change"),
     ),
     "2.6": Figure("The homogeneous de Boor algorithm.", lambda: diagram("de boor", homogeneous=True)),
     "2.7": Figure("Blossoming and homogenising commute.", square),
@@ -192,26 +192,3 @@ FIGURES = {
     "2.17": Figure("From Bézier to monomial form: differencing.", lambda: diagram("differencing")),
     "2.18": Figure("The de Boor algorithm for a cubic in Newton dual form.", lambda: diagram("newton-dual")),
 }
-
-
-def figure(number: str) -> Diagram:
-    """Draw a figure of chapter 1 or 2 of the book, by its number, from the procedure that it shows.
-
-    Parameters
-    ----------
-    number : str
-        "1.1" … "1.5", "2.1" … "2.4", "2.5a", "2.5b", "2.6" … "2.18"; `FIGURES` has their captions.
-
-    Raises
-    ------
-    ParameterError
-        If there is no such figure.
-
-    Examples
-    --------
-    >>> figure("2.16").title
-    "Fig. 2.16. From monomial to Bézier form: Pascal's triangle, reversed."
-    >>> {edge.label for edge in figure("2.16").edges}
-    {'1'}
-    """
-    return numbered(FIGURES, number)

@@ -7,21 +7,16 @@ from knotwork.insertion.face import insert, insertion_matrix
 from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
 if TYPE_CHECKING:
-    from knotwork.diagrams.insertion import diagram
-    from knotwork.diagrams.insertion_figures import FIGURES, figure
     from knotwork.insertion.counts.measuring import count
     from knotwork.insertion.methods.catalogue import METHODS, Method
     from knotwork.insertion.methods.factored import Startup
 
 __all__ = [
-    "FIGURES",
     "METHODS",
     "Method",
     "Startup",
     "clamp",
     "count",
-    "diagram",
-    "figure",
     "from_bezier",
     "insert",
     "insertion_matrix",
@@ -32,13 +27,10 @@ __all__ = [
 
 #: what is loaded when it is first asked for
 _LATER = {
-    "FIGURES": "diagrams.insertion_figures",
     "METHODS": "insertion.methods.catalogue",
     "Method": "insertion.methods.catalogue",
     "Startup": "insertion.methods.factored",
     "count": "insertion.counts.measuring",
-    "diagram": "diagrams.insertion",
-    "figure": "diagrams.insertion_figures",
 }
 
 

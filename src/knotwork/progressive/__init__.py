@@ -3,8 +3,6 @@
 One polynomial segment of degree n over 2n homogeneous knots, which need be neither sorted nor finite.
 """
 
-from typing import TYPE_CHECKING, Any
-
 from knotwork.progressive.bases import bernstein, bspline_segment, hermite_primal, monomial, newton_dual, power
 from knotwork.progressive.change import METHODS, Insertion, change_basis, insert
 from knotwork.progressive.curve import Curve
@@ -14,17 +12,10 @@ from knotwork.progressive.newton import divided_differences, evenly_spaced, newt
 from knotwork.progressive.segments import blossom, segment
 from knotwork.progressive.sequence import Sequence
 
-if TYPE_CHECKING:
-    from knotwork.diagrams import Diagram
-    from knotwork.diagrams.progressive import diagram
-    from knotwork.diagrams.progressive_figures import FIGURES, figure
-
 __all__ = [
     "DELTA",
-    "FIGURES",
     "METHODS",
     "Curve",
-    "Diagram",
     "Insertion",
     "Match",
     "Sequence",
@@ -32,10 +23,8 @@ __all__ = [
     "blossom",
     "bspline_segment",
     "change_basis",
-    "diagram",
     "divided_differences",
     "evenly_spaced",
-    "figure",
     "hermite_primal",
     "insert",
     "matches",
@@ -45,13 +34,3 @@ __all__ = [
     "power",
     "segment",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    """Load the diagrams when one is first asked for."""
-    if name not in ("FIGURES", "Diagram", "diagram", "figure"):
-        raise AttributeError(f"module 'knotwork.progressive' has no attribute {name!r}")
-    from knotwork.diagrams import drawing, progressive, progressive_figures
-
-    part = {"Diagram": drawing, "diagram": progressive}.get(name, progressive_figures)
-    return getattr(part, name)

@@ -53,7 +53,7 @@ def blossom(spline: Spline, args: Any, interval: Any = None) -> Any:
         If rational, the blossom is that of its homogeneous coordinates.
     args : sequence of `degree` numbers and pairs; a sequence of such sequences, one per parameter, for surfaces
         A number u is the affine argument (u, 1); a pair is taken as it is; `progressive.DELTA` differentiates.
-    interval : int or pair of numbers, or one of them a parameter, optional
+    interval : int or pair of numbers, or one of them per parameter, optional
         The segment, as in `segment`. By default one whose blossom at these arguments is a control point of some
         refinement: the arguments are consecutive knots of a refinement, and whatever end of the interval lies between
         them and the interval is among them as often as it is a knot (§1.3). All such segments give the same value.

@@ -172,11 +172,11 @@ METHODS: dict[str, Method] = {
             boehm.blocked, Problem.by_intervals, predictions.boehm, bound=True,
         ),
         *_in_three_forms(
-            "oslo", "oslo", "§4.6", "Oslo II: one triangle a new vertex",
+            "oslo", "oslo", "§4.6", "Oslo II: one triangle per new vertex",
             oslo.oslo, Problem.by_vertices, predictions.oslo,
         ),
         *_in_three_forms(
-            "oslo-improved", "oslo", "§4.9", "one triangle a new vertex, with a level for each new knot alone",
+            "oslo-improved", "oslo", "§4.9", "one triangle per new vertex, with a level for each new knot alone",
             oslo.improved, Problem.by_vertices, predictions.oslo, bound=True,
         ),
         *_in_three_forms(
@@ -225,7 +225,7 @@ METHODS: dict[str, Method] = {
             factored.equal, predictions.step_4, predictions.evenly_spaced,
         ),
         Method(
-            "factored-oslo", "factored", "factored", "§3.6.2", "a triangle a new vertex, without divisions",
+            "factored-oslo", "factored", "factored", "§3.6.2", "a triangle per new vertex, without divisions",
             lambda s: s.by_vertices(_oslo_factored), predictions.factored(predictions.oslo),
         ),
         Method(

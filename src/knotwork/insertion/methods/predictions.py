@@ -37,7 +37,7 @@ def boehm(s: Size) -> Any:
 
 
 def oslo(s: Size) -> Any:
-    """A triangle a new vertex; an upper bound for the improved algorithm."""
+    """A triangle per new vertex; an upper bound for the improved algorithm."""
     return Fraction(s.r * s.n * (s.n + 1), 2)
 
 
@@ -101,7 +101,7 @@ def with_all_right_knots(combinations: Formula) -> Formula:
 
 
 def standard(combinations: Formula) -> Callable[[Size], Counts]:
-    """(3 + d) A/S, 2d M, 1 D a combination."""
+    """(3 + d) A/S, 2d M, 1 D per combination."""
 
     def counts(s: Size) -> Counts:
         c = combinations(s)
@@ -111,7 +111,7 @@ def standard(combinations: Formula) -> Callable[[Size], Counts]:
 
 
 def rewritten(combinations: Formula) -> Callable[[Size], Counts]:
-    """2 (1 + d) A/S, d M, 1 D a combination."""
+    """2 (1 + d) A/S, d M, 1 D per combination."""
 
     def counts(s: Size) -> Counts:
         c = combinations(s)
@@ -121,7 +121,7 @@ def rewritten(combinations: Formula) -> Callable[[Size], Counts]:
 
 
 def factored(combinations: Formula, reduced: bool = False) -> Callable[[Size], Counts]:
-    """(1 + d) A/S, d M a combination, and the division triangle of every interval.
+    """(1 + d) A/S, d M per combination, and the division triangle of every interval.
 
     It has n (n + 1) / 2 divisions of points; `reduced`, n of them where the interval before has one (§3.6.3).
     """
@@ -164,7 +164,7 @@ def _product(s: Size) -> tuple[Any, Any]:
 
 
 def boehm_columns(s: Size) -> Counts:
-    """At most m (n² + n + 2) / 2 combinations of numbers: 1 + n + (n - 1) + … + 1 a knot."""
+    """At most m (n² + n + 2) / 2 combinations of numbers: 1 + n + (n - 1) + … + 1 per knot."""
     c = Fraction(s.m * (s.n**2 + s.n + 2), 2)
     a, m = _product(s)
     return _counts(4 * c + a, 2 * c + m, c, c)
@@ -200,7 +200,7 @@ def goldman_rows(s: Size) -> Counts:
 
 
 def morken(s: Size) -> Counts:
-    """8 A/S, 4 M, 2 D an entry."""
+    """8 A/S, 4 M, 2 D per entry."""
     entries, (a, m) = (s.n + 1) * s.r, _product(s)
     return _counts(8 * entries + a, 4 * entries + m, 2 * entries, 0)
 
