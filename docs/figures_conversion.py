@@ -9,7 +9,7 @@ matplotlib.use("agg")
 from matplotlib import pyplot as plt
 
 import knotwork as kw
-from knotwork.conversion.common import common_refinement, embedding
+from knotwork.conversion.nesting import common_refinement, embedding
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.plotting import INK, KNOT, NET
 

@@ -11,8 +11,7 @@ if TYPE_CHECKING:
     from knotwork import diagrams as diagrams
     from knotwork import progressive as progressive
     from knotwork import stability as stability
-    from knotwork.conversion import Conversion, PolynomialPieces, elevate, from_pieces, lower
-    from knotwork.conversion.convert import convert
+    from knotwork.conversion import Conversion, PolynomialPieces, convert, elevate, from_pieces, lower
     from knotwork.files import Written, read, write
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot

@@ -15,7 +15,7 @@ import oracle
 import strategies as kinds
 from conversion.pairs import copies_inside, intersection, pairs, places, values
 from knotwork.conversion.certificate import difference
-from knotwork.conversion.common import common_refinement, embedding, holds, product
+from knotwork.conversion.nesting import common_refinement, embedding, holds, product
 from knotwork.errors import KnotError, ParameterError, PointError
 
 F = Fraction

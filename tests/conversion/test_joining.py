@@ -15,7 +15,7 @@ import knotwork as kw
 import oracle
 import strategies as kinds
 from conversion.pairs import copies_inside, places
-from knotwork.conversion.common import space_over
+from knotwork.conversion.nesting import space_over
 from knotwork.errors import KnotError, ParameterError, PointError
 
 F = Fraction

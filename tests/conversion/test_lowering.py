@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 import knotwork as kw
 import strategies as kinds
 from conversion.pairs import copies_inside, places
-from knotwork.conversion.common import common_refinement, embedding
+from knotwork.conversion.nesting import common_refinement, embedding
 from knotwork.errors import ParameterError, RoundingWarning
 
 F = Fraction

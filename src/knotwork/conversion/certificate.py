@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_arithmetic_of, real_numbers
-from knotwork.conversion.common import common_refinement, embedding
+from knotwork.conversion.nesting import common_refinement, embedding
 from knotwork.errors import ParameterError, RoundingWarning
 from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace

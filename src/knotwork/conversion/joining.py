@@ -8,8 +8,8 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, numbers, require_finite, whole
 from knotwork.conversion.certificate import Tolerance, coefficientwise
-from knotwork.conversion.common import common_refinement, space_over
-from knotwork.conversion.convert import Conversion, convert, measured
+from knotwork.conversion.face import Conversion, convert, measured
+from knotwork.conversion.nesting import common_refinement, space_over
 from knotwork.conversion.polynomials import PolynomialPieces, nets_of
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import from_bezier

@@ -8,8 +8,8 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, whole
 from knotwork.conversion.certificate import Tolerance
-from knotwork.conversion.common import breaks_and_copies, common_refinement, embedding, space_over
-from knotwork.conversion.convert import Conversion, by_least_squares, concluded, measured, solved
+from knotwork.conversion.face import Conversion, by_least_squares, concluded, measured, solved
+from knotwork.conversion.nesting import breaks_and_copies, common_refinement, embedding, space_over
 from knotwork.errors import ParameterError
 from knotwork.linear.banded import Banded
 from knotwork.linear.least_squares import least_squares

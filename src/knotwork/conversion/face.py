@@ -10,8 +10,8 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, exact, require_finite
 from knotwork.conversion.certificate import Difference, difference, rounding
 from knotwork.conversion.chebyshev import chebyshev
-from knotwork.conversion.common import common_refinement, embedding, holds
 from knotwork.conversion.elevation import raised
+from knotwork.conversion.nesting import common_refinement, embedding, holds
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.conversion.polynomials import BASES, to_pieces
 from knotwork.errors import KnotError, ParameterError, PointError
