@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
-    from knotwork.removal import Reduction, Removal, reduce, remove
+    from knotwork.removal import Reduction, reduce, relative, remove
     from knotwork.space import SplineSpace
     from knotwork.spline import Spline, curve, surface
 
@@ -26,7 +26,6 @@ __all__ = [
     "Conversion",
     "PolynomialPieces",
     "Reduction",
-    "Removal",
     "Spline",
     "SplineSpace",
     "Written",
@@ -46,6 +45,7 @@ __all__ = [
     "progressive",
     "read",
     "reduce",
+    "relative",
     "remove",
     "segment",
     "split",
@@ -64,7 +64,7 @@ _PARTS = {
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),
     "progressive": ("blossom", "segment"),
-    "removal": ("Reduction", "Removal", "reduce", "remove"),
+    "removal": ("Reduction", "reduce", "relative", "remove"),
     "space": ("SplineSpace",),
     "spline": ("Spline", "curve", "surface"),
     "stability": (),

@@ -1,5 +1,7 @@
 """Knot removal and data reduction, with certificates."""
 
-from knotwork.removal.reduce import Reduction, Removal, reduce, remove
+from knotwork.removal.faces import reduce, remove
+from knotwork.removal.result import Reduction
+from knotwork.removal.tolerance import relative
 
-__all__ = ["Reduction", "Removal", "reduce", "remove"]
+__all__ = ["Reduction", "reduce", "relative", "remove"]

@@ -1,0 +1,169 @@
+"""The functions that users call: `remove` and `reduce`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.errors import ParameterError
+from knotwork.knots import distinct, multiplicities
+from knotwork.removal.features import Kept, kept_features
+from knotwork.removal.lyche_morken import search
+from knotwork.removal.problem import Original
+from knotwork.removal.result import Progress, Reduction
+from knotwork.spline import Spline
+
+DISTANCES = ("parametric", "geometric")
+FORMS = ("spline", "bezier", "polyline")
+EFFORTS = ("fast", "normal", "best")
+CROSSINGS = ("none-new", "allow")
+SMALL = ("keep", "drop")
+METHODS = (None, "lyche-morken")
+
+
+def remove(spline: Spline, knots: Any, axis: int = 0, tolerance: Any = 0.0) -> Reduction:
+    """Remove as many of the given knots as the tolerance admits in total.
+
+    Parameters
+    ----------
+    spline : Spline
+    knots : number or array_like
+        Knots to remove; repeats ask for several copies.
+    axis : int
+        Which parameter of a surface or volume; all its rows are decided together.
+    tolerance : float or array_like, shape (d,), or relative
+        Largest change allowed, in the units of the points: a number is a Euclidean distance, an array has one number
+        per component, and `relative` is a part of the extent. It compares equal parameters and holds for the result as
+        a whole, not for each knot. In float arithmetic a tolerance below the rounding error of the control points
+        counts as that error, 8 (degree + 1) ε max |coordinate|, so that 0 removes what is removable; in exact
+        arithmetic 0 is 0.
+
+    Returns
+    -------
+    Reduction
+        ``spline``, ``removed`` and ``bound``: the largest coefficient of the difference on the original knots, and what
+        rounding may hide, which bounds the difference everywhere. For a rational spline, a bound for the points.
+
+    Raises
+    ------
+    KnotError
+        If a knot is not there as often as asked, or is an end of the domain.
+
+    Warns
+    -----
+    RoundingWarning
+        If the bound is above a tolerance that is not 0, which only rounding can make so; the message names it.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> kw.remove(kw.insert(c, [0.25, 0.5]), [0.25, 0.5]).spline.space == c.space
+    True
+    """
+    axis = spline.axis(axis)
+    original = Original(spline, axis, tolerance)
+    space = spline.spaces[axis]
+    kept = space.without_knots(knots).knots
+    values, counts = distinct(space.knots)
+    gone = counts - multiplicities(kept, values)
+    from_end = np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(space.knots))
+    candidates = from_end < np.repeat(gone, counts)
+    result, mask = search(original, candidates, None)
+    return Reduction(result.spline, original.told(result, "remove"), removed=space.knots[~mask])
+
+
+def reduce(
+    spline: Spline,
+    tolerance: Any,
+    *,
+    distance: str = "parametric",
+    form: str = "spline",
+    effort: str = "normal",
+    keep: Kept = None,
+    ends: int | tuple[int | None, int | None] | None = 0,
+    crossings: str = "none-new",
+    small: str = "keep",
+    method: str | None = None,
+    progress: Progress | None = None,
+) -> Reduction:
+    """Return a curve with few knots within a tolerance of the given one.
+
+    Parameters
+    ----------
+    spline : Spline
+        Of one parameter.
+    tolerance : float or array_like, shape (d,), or relative
+        As in `remove`.
+    distance : "parametric" or "geometric"
+        Whether points at equal parameters are compared, or shapes.
+    form : "spline", "bezier" or "polyline"
+        What is asked for; at equal parameters a spline of the same degree.
+    effort : "fast", "normal" or "best"
+        How long to search.
+    keep : "corners", or a list of numbers and pairs of numbers, optional
+        What stays bit for bit. A number: the knot there, with all its copies. A pair (a, b): the curve over [a, b], so
+        (u, u) is the point at u. "corners": all knots where the curve need not be smooth, and the points there.
+    ends : int, None, or a pair of them
+        At clamped ends, how many derivatives stay, and the position with 0; None leaves an end free.
+    crossings : "none-new" or "allow"
+        For shapes: whether the result may cross itself where the original does not.
+    small : "keep" or "drop"
+        For shapes: what becomes of closed curves smaller than the tolerance.
+    method : "lyche-morken", optional
+        The classic search instead of ours.
+    progress : callable, optional
+        Called with a fraction from 0 to 1 as the work goes on. An error raised there ends the work and passes.
+
+    Returns
+    -------
+    Reduction
+
+    Raises
+    ------
+    ParameterError
+        If the tolerance is negative or not finite, the spline has several parameters, or an option is not known.
+
+    Warns
+    -----
+    RoundingWarning
+        As in `remove`.
+
+    Notes
+    -----
+    The bound is proven; that no curve with fewer knots would do is not, for the search is a heuristic.
+
+    Examples
+    --------
+    >>> import numpy as np, knotwork as kw
+    >>> x = np.linspace(0, 1, 200)
+    >>> f = kw.curve(np.sin(6 * x), knots=kw.SplineSpace.clamped(3, 200).knots)
+    >>> small = kw.reduce(f, 1e-3)
+    >>> small.spline.space.dimension < 20, small.bound <= 1e-3
+    (True, True)
+    """
+    if not isinstance(spline, Spline):
+        raise ParameterError(f"{type(spline).__name__} given; reduce takes a Spline, and fit takes points")
+    _require_one_of(distance=(distance, DISTANCES), form=(form, FORMS), effort=(effort, EFFORTS))
+    _require_one_of(crossings=(crossings, CROSSINGS), small=(small, SMALL), method=(method, METHODS))
+    if distance == "geometric":  # the one place where the reduction of shapes is called
+        raise ParameterError("distance 'geometric' given; expected 'parametric': shapes are not reduced yet")
+    if form != "spline":
+        raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")
+    if len(spline.spaces) != 1:
+        raise ParameterError(
+            f"reduce takes curves; this spline has {len(spline.spaces)} parameters: remove(…, axis=…) takes named knots"
+        )
+    pinned, stay = kept_features(spline, keep, ends)
+    original = Original(spline, 0, tolerance, pinned)
+    candidates: Array = spline.space.removable & ~stay
+    result, mask = search(original, candidates, progress)
+    return Reduction(result.spline, original.told(result, "reduce"), removed=spline.space.knots[~mask], effort=effort)
+
+
+def _require_one_of(**options: tuple[Any, tuple[Any, ...]]) -> None:
+    for name, (given, known) in options.items():
+        if given not in known:
+            raise ParameterError(f"{name} {given!r} given; expected one of {', '.join(map(repr, known))}")

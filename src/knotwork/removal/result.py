@@ -1,0 +1,48 @@
+"""What a removal comes to: fewer knots, and a proven bound on what that changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.spline import Spline
+
+#: called with a fraction from 0 to 1 as the work goes on
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reduction:
+    """The result of `remove`, `reduce` and `fit`.
+
+    Attributes
+    ----------
+    spline : Spline
+        With fewer knots.
+    bound : number or ndarray, shape (d,)
+        What was changed at most, under rounding too: a Euclidean distance, or one per component if the tolerance was
+        given so.
+    distance : str
+        What `bound` measures: "parametric" compares equal parameters, "geometric" shapes.
+    removed : ndarray
+        The knots of the original that are not in the result, sorted.
+    lower_bound : int or None
+        No spline of this degree within the tolerance has fewer control points: proven.
+    heuristic_lower_bound : int or None
+        Fewer are not to be expected.
+    matching : ndarray or None
+        For shapes, the parameters that correspond.
+    effort : str or None
+        How long was searched: "fast", "normal" or "best".
+    """
+
+    spline: Spline
+    bound: Any
+    distance: str = "parametric"
+    removed: Any = ()
+    lower_bound: int | None = None
+    heuristic_lower_bound: int | None = None
+    matching: Array | None = None
+    effort: str | None = None

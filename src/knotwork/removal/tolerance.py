@@ -1,0 +1,119 @@
+"""What a tolerance means: a distance, one per component, a part of the extent, or a function of the parameter."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array, in_arithmetic_of, real_numbers
+from knotwork.errors import ParameterError
+from knotwork.spline import Spline
+
+
+@dataclass(frozen=True, slots=True)
+class Relative:
+    """A tolerance as a part of the extent; see `relative`."""
+
+    fraction: Any
+
+
+def relative(fraction: Any) -> Relative:
+    """Return a tolerance that is a part of a spline's extent: the longest side of the box that just holds it.
+
+    Parameters
+    ----------
+    fraction : number
+        0.01 means one per cent.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> from knotwork.removal.tolerance import extent_of
+    >>> arch = kw.curve([[0, 0], [1, 4], [2, 0]], 2)
+    >>> extent_of(arch)
+    2.0
+    >>> kw.reduce(kw.insert(arch, 0.25), kw.relative(0.01)).spline == arch
+    True
+    """
+    value = real_numbers(fraction, "fraction", ParameterError)
+    if value.shape != () or value < 0:
+        raise ParameterError(f"fraction {fraction!r} given; expected a number of at least 0")
+    return Relative(value[()])
+
+
+def extent_of(spline: Spline) -> Any:
+    """Return the longest side of the box of points that a spline surely reaches.
+
+    Sampled densely and at the zeros of the derivative between samples, so never above the true extent.
+    """
+    axes = []
+    for space in spline.spaces:
+        breaks = space.breaks
+        steps = np.arange(8) * (breaks[1:] - breaks[:-1])[:, None] / 8
+        axes.append(np.append((breaks[:-1, None] + steps).reshape(-1), breaks[-1:]))
+    values = spline(*axes, grid=True)
+    values = np.abs(values) if values.dtype.kind == "c" else values
+    values = values.reshape(-1, spline.dim)
+    return (values.max(axis=0) - values.min(axis=0)).max(keepdims=True).item()
+
+
+class Tolerance:
+    """The largest change allowed to a spline, and how a change is measured against it.
+
+    A number is a Euclidean distance; an array has one number per component.
+    """
+
+    def __init__(self, spline: Spline, tolerance: Any) -> None:
+        if isinstance(tolerance, Relative):
+            tolerance = tolerance.fraction * extent_of(spline)
+        given = real_numbers(tolerance, "tolerance", ParameterError)
+        if given.shape not in ((), (spline.dim,)):
+            raise ParameterError(
+                f"tolerance of shape {given.shape} given; expected a number or one per component, {spline.dim}"
+            )
+        given = in_arithmetic_of(spline.coefficients, given, "tolerance", ParameterError)
+        if (given < 0).any():
+            raise ParameterError(f"tolerance {tolerance} given; expected at least 0")
+        self.given = given
+        #: whether a change is measured as a Euclidean distance, and not in each component
+        self.euclidean = given.ndim == 0
+
+    def measured(self, change: Array) -> Array:
+        """Return how large changes (…, d) are: Euclidean lengths (…, 1), or their components; never rounded down."""
+        size = np.abs(change)
+        return lengths(size.reshape(-1, size.shape[-1])).reshape(*size.shape[:-1], 1) if self.euclidean else size
+
+    def reported(self, bound: Array) -> Any:
+        """Return the bound as the tolerance was given: a number, or one per component."""
+        return bound.max(keepdims=True).item() if self.euclidean else bound
+
+
+def lengths(change: Array) -> Array:
+    """Return the Euclidean length of changes (N, d): rounded up where that is needed, in exact arithmetic too."""
+    if change.shape[-1] == 1:
+        only: Array = change[..., 0]
+        return only
+    largest = change.max(axis=-1)
+    scale = np.where(largest > 0, largest, largest * 0 + 1)
+    if change.dtype == object:
+        squares = ((change / scale[..., None]) ** 2).sum(axis=-1)
+        exact: Array = scale * np.vectorize(_root_above, otypes=[object])(squares)
+        return exact
+    unit = np.finfo(change.dtype).eps
+    result: Array = scale * np.sqrt(((change / scale[..., None]) ** 2).sum(axis=-1)) * (1 + 4 * change.shape[-1] * unit)
+    return np.where(np.count_nonzero(change, axis=-1) <= 1, largest, result)
+
+
+def _root_above(square: Any) -> Any:
+    """Return a number whose square is at least an exact one, by at most a factor 1 + 2⁻⁶⁰; the root if it is exact."""
+    q = Fraction(square) if isinstance(square, int) else square
+    if not isinstance(q, Fraction):
+        return q**0.5
+    p, r = math.isqrt(q.numerator), math.isqrt(q.denominator)
+    if p * p == q.numerator and r * r == q.denominator:
+        return Fraction(p, r)
+    return Fraction(math.isqrt((q.numerator << 128) // q.denominator) + 1, 1 << 64)
