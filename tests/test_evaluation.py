@@ -262,3 +262,47 @@ def test_the_nodes_reproduce_the_parameter(space):
     if not space.periodic:
         u = space.breaks
         assert (Spline(space, space.nodes)(u) == u).all()
+
+
+# ---- one rounding beyond the end ------------------------------------------------------------------------------------
+
+
+def test_a_rounding_beyond_the_end_is_the_end():
+    a, b = 1.2731048273548957, 58.44353967628846
+    c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]], 3, [a] * 4 + [b] * 4)
+    u = a + 1.0 * (b - a)
+    assert u > b
+    assert c(u).tolist() == [4, 0]
+    assert (c.derivatives([u, a], 2) == c.derivatives([b, a], 2)).all()
+    d = kw.curve([[0, 0], [1, 2], [4, 0]], 2, [0, 0, 0, 0.3, 0.3, 0.3])
+    assert d(3 * 0.1).tolist() == [4, 0]
+    assert d(0.3 - 3 * 0.1).tolist() == [0, 0]  # one rounding of the larger end before the start
+    s = kw.surface(np.arange(18).reshape(3, 3, 2), 2, ([0, 0, 0, 0.3, 0.3, 0.3], [a] * 3 + [b] * 3))
+    assert (s(3 * 0.1, u) == s(0.3, b)).all()
+    assert (s([3 * 0.1], [u], grid=True) == s([0.3], [b], grid=True)).all()
+
+
+@pytest.mark.parametrize(("end", "beyond"), [(0.3, np.inf), (-7.0, -np.inf)])
+def test_more_than_four_units_beyond_the_end_are_an_error(end, beyond):
+    c = kw.curve([0.0, 1.0, 5.0], 2, [*[min(end, 0.125)] * 3, *[max(end, 0.125)] * 3])
+    u, ends = end, [end]
+    for _ in range(5):
+        u = float(np.nextafter(u, beyond))
+        ends.append(u)
+    assert (c(ends[:5]) == c(end)).all()
+    with pytest.raises(ParameterError, match="outside the domain"):
+        c(ends[5])
+    with pytest.raises(ParameterError, match="outside the domain"):
+        c.derivatives(ends, 1)
+    assert c(ends[1], extrapolate=True) != c(end)
+
+
+@given(kinds.curves(dtype=float, periodic=True), st.data())
+def test_few_points_of_a_long_period_are_those_of_all(curve, data):
+    """Few points gather the coefficients they use, many take all of them: the same values, bit for bit."""
+    space = curve.space
+    inside = (space.breaks[:-1, None] + np.outer(np.diff(space.breaks), [0, 0.25, 0.5])).reshape(-1)
+    many = np.tile(inside, space.order)
+    together = curve(many)
+    for i in data.draw(st.lists(st.integers(0, len(inside) - 1), max_size=4)):
+        assert (curve(inside[i]) == together[i]).all()

@@ -44,11 +44,11 @@ def derivative(space: SplineSpace, coefficients: Array, axis: int) -> tuple[Spli
     n = space.degree
     if n == 0:
         return space, coefficients * 0
-    P = as_blocks(coefficients, axis)
-    t, zero = space.unrolled
+    unrolled, P = space.unrolled, as_blocks(coefficients, axis)
+    t = unrolled.knots
     if space.periodic:
-        P = np.ascontiguousarray(P[:, space.wrapped(-1, space.dimension + 1)])
-        kept, first = space.knots, zero - 1
+        kept, first = space.knots, unrolled.zero - 1
+        P = unrolled.points(P, first, first + space.dimension + 1)
     else:
         kept, first = t[1:-1], 0
     out = np.empty((P.shape[0], P.shape[1] - 1, P.shape[2]), P.dtype)
@@ -69,11 +69,7 @@ def antiderivative(space: SplineSpace, coefficients: Array, axis: int) -> tuple[
     That of a periodic spline is over one period, in an ordinary space: it need not close.
     """
     n = space.degree
-    P = as_blocks(coefficients, axis)
-    t, zero = space.unrolled
-    if space.periodic:
-        P = np.ascontiguousarray(P[:, space.wrapped(-n, space.dimension + n)])
-        t = t[zero - n : zero + space.dimension + n + 1]
+    t, P = space.unrolled.opened(as_blocks(coefficients, axis))
     out = np.empty((P.shape[0], P.shape[1] + 1, P.shape[2]), P.dtype)
     running_sums(t, P, n, 0, out, extent(P.shape[2]))
     require_finite(out, "integral", PointError)

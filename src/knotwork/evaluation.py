@@ -118,11 +118,10 @@ class Basis:
 
     def __init__(self, space: SplineSpace, u: Array) -> None:
         """Prepare for parameters u: a table of cells pays for itself only if they are many and not sorted."""
-        n = space.degree
         self.space = space
-        self.t, zero = space.unrolled
+        self.unrolled = space.unrolled
+        self.t = self.unrolled.knots
         self.first, self.last = space.cached("intervals", self._intervals)
-        self.shift = n + zero
         self.walk = WALK if (u[:-1] <= u[1:]).all() else 0
         if self.walk or len(u) < (self.last - self.first) // 8:
             self.table = np.array([self.first, self.last])
@@ -146,8 +145,8 @@ class Basis:
         n = self.space.degree
         E = empty((order + 1, len(u), n + 1), self.t.dtype)
         basis(self.t, extent(n), extent(order + 1), span, u, E)
-        span -= self.shift
-        return span % self.space.dimension if self.space.periodic else span, E
+        span -= n
+        return self.unrolled.own(span), E
 
 
 def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
@@ -156,7 +155,8 @@ def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
     Raises
     ------
     ParameterError
-        If a value is not a finite real number, or is outside the domain and `extrapolate` is false.
+        If a value is not a finite real number, or is outside the domain and `extrapolate` is false; what rounding
+        took there, by 4 units in the last place of the larger end or less, is the end.
     """
     x = in_arithmetic_of(space.knots, real_numbers(u, "parameters", ParameterError), "parameters", ParameterError)
     if not x.size:
@@ -165,12 +165,15 @@ def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
     outside = np.asarray((x < a) | (x > b))
     if not outside.any():
         return x
+    if not space.periodic and not extrapolate:
+        x = space.rounded_inside(x)
+        outside = np.asarray((x < a) | (x > b))
     if space.periodic:
         with np.errstate(over="ignore", invalid="ignore"):
             inside = np.asarray(a + np.mod(x - a, b - a), x.dtype)
         require_finite(inside, "parameters less the start of the period", ParameterError)
         return np.where(outside, np.where(inside < b, inside, a), x)  # rounding may reach b
-    if not extrapolate:
+    if not extrapolate and outside.any():
         wrong = x.reshape(-1)[int(np.argmax(outside))]
         raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]; extrapolate=True allows it")
     return x
@@ -187,10 +190,10 @@ def scattered(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Arra
     except ValueError:
         raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
     shape, count = wide[0].shape, wide[0].size
-    P = _padded(spaces, coefficients)
-    counts = P.shape[:k]
-    P = P.reshape(math.prod(counts), -1)
-    out = empty((*(order + 1,) * k, count, P.shape[1]), P.dtype)
+    few = [space.periodic and count * space.order < space.dimension for space in spaces]
+    P = _padded(spaces, coefficients, few)
+    width = math.prod(P.shape[k:])
+    out = empty((*(order + 1,) * k, count, width), P.dtype)
     flat = [np.ascontiguousarray(v).reshape(-1) for v in wide]
     bases = [Basis(space, v) for space, v in zip(spaces, flat, strict=True)]
 
@@ -198,11 +201,13 @@ def scattered(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Arra
         for lo in range(start, stop, CHUNK):
             some = slice(lo, min(lo + CHUNK, stop))
             rows = [basis.rows(v[some], order) for basis, v in zip(bases, flat, strict=True)]
+            Q, rows = _gathered(P, rows, spaces, few)
+            flat_Q = Q.reshape(-1, width)
             if k == 1:
                 for values, E in zip(out, rows[0][1], strict=True):
-                    apply_rows(rows[0][0], E, P[None], values[None, some], extent(P.shape[1]))
+                    apply_rows(rows[0][0], E, flat_Q[None], values[None, some], extent(width))
             else:
-                _contract(P, counts, rows, out[..., some, :])
+                _contract(flat_Q, Q.shape[:k], rows, out[..., some, :])
 
     in_parts(part, count, count * sum(space.order for space in spaces))
     return out.reshape(*out.shape[:k], *shape, *coefficients.shape[k:])
@@ -238,12 +243,25 @@ def on_grid(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Array]
     return out
 
 
-def _padded(spaces: tuple[SplineSpace, ...], P: Array) -> Array:
-    """Return coefficients with the first `degree` of each periodic axis repeated after the last."""
+def _padded(spaces: tuple[SplineSpace, ...], P: Array, few: list[bool]) -> Array:
+    """Return coefficients with the first `degree` of each periodic axis repeated after the last, unless it uses few."""
     for axis, space in enumerate(spaces):
-        if space.periodic:
-            P = np.take(P, space.wrapped(0, space.dimension + space.degree), axis=axis)
+        if space.periodic and not few[axis]:
+            P = np.take(P, np.arange(space.dimension + space.degree) % space.dimension, axis=axis)
     return P
+
+
+def _gathered(
+    P: Array, rows: list[tuple[Array, Array]], spaces: tuple[SplineSpace, ...], few: list[bool]
+) -> tuple[Array, list[tuple[Array, Array]]]:
+    """Return only the coefficients that few points use, along each axis where they are few, and rows to match."""
+    for axis, space in enumerate(spaces):
+        if few[axis]:
+            first, E = rows[axis]
+            used = (first[:, None] + np.arange(space.order)) % space.dimension
+            P = np.take(P, used.reshape(-1), axis=axis)
+            rows[axis] = np.arange(len(first)) * space.order, E
+    return P, rows
 
 
 def quotient_rule(A: Array, k: int) -> Array:

@@ -28,7 +28,7 @@ def sorted_knots(knots: Any, what: str = "knots") -> Array:
     return t
 
 
-def some_knots(knots: Any, what: str, like: Array) -> Array:
+def sorted_list(knots: Any, what: str, like: Array) -> Array:
     """Return a number or a flat list of knots, in any order, sorted and in the arithmetic of `like`."""
     x = in_arithmetic_of(like, real_array(knots, what, KnotError), what, KnotError)
     if x.ndim == 0:
@@ -46,15 +46,6 @@ def in_order(t: Array) -> bool:
     return not len(t) or bool(
         -math.inf < t.item(0) and t.item(-1) < math.inf and np.count_nonzero(t[:-1] <= t[1:]) == len(t) - 1
     )
-
-
-def new_knots(knots: Any, like: Array, domain: tuple[Any, Any]) -> Array:
-    """Return new knots as `some_knots` does, after checking that they lie in `domain`."""
-    x = some_knots(knots, "new knots", like)
-    if len(x) and (x[0] < domain[0] or x[-1] > domain[1]):
-        outside = x[0] if x[0] < domain[0] else x[-1]
-        raise KnotError(f"knot {outside} is outside the domain [{domain[0]}, {domain[1]}]")
-    return x
 
 
 def distinct(knots: Array) -> tuple[Array, Array]:
@@ -92,7 +83,7 @@ def old_is_next(U, j, W, k, stop):
 
 @kernel
 def next_knot(U, j, W, k, stop):
-    """Return the knot that follows j of U and k of W in their merge, and how many of each are then merged."""
+    """Return the next knot of the merge, after j knots of U and k of W, and how many of each are then used."""
     if old_is_next(U, j, W, k, stop):
         return U[j], j + 1, k
     return W[k], j, k + 1
@@ -148,14 +139,6 @@ def nodes(knots: Array, degree: int, count: int) -> Array:
     # rounding may not take a mean beyond its knots
     inside: Array = np.minimum(np.maximum(mean, knots[1 : count + 1]), knots[degree : count + degree])
     return inside
-
-
-def turned(knots: Array, turn: Any, start: Any, end: Any) -> Array:
-    """Return knots of the period [start, end] moved by whole periods, so that equal knots stay equal and none pass."""
-    after = end + ((knots - start) + (turn - 1) * (end - start))
-    before = start - ((end - knots) + (-turn - 1) * (end - start))
-    moved: Array = np.where(turn == 0, knots, np.where(turn > 0, after, before))
-    return moved
 
 
 def dividing(breaks: Array, parts: int) -> Array:

@@ -15,13 +15,12 @@ from knotwork.knots import (
     distinct,
     merged,
     multiplicities,
-    new_knots,
     nodes,
     require_multiplicity,
-    some_knots,
     sorted_knots,
-    turned,
+    sorted_list,
 )
+from knotwork.unrolled import Unrolled, require_apart
 from knotwork.value import Frozen
 
 _set = object.__setattr__
@@ -41,12 +40,13 @@ class SplineSpace(Frozen):
     periodic : bool
         If true, `knots` cover one period and its end: knots in the half-open period, the seam counted once with its
         multiplicity at the start, then the end of the period, once. The dimension is the number of knots in the
-        half-open period, and basis function i starts at knot i, as in the ordinary case.
+        half-open period, and basis function i starts at knot i, as in the ordinary case. Distinct float knots of a
+        period may not be closer than rounding around the seam allows: 2⁻³² of their size (`knotwork.unrolled`).
 
     Raises
     ------
     KnotError
-        If the knots are not finite, not sorted, too few, or repeated too often.
+        If the knots are not finite, not sorted, too few, or repeated too often; of a period, if they are too close.
 
     Notes
     -----
@@ -157,8 +157,7 @@ class SplineSpace(Frozen):
     @property
     def nodes(self) -> Array:
         """The Greville abscissae, one a control point; a periodic space's last ones pass its end."""
-        t, first = self.unrolled
-        return nodes(t[first:], self.degree, self.dimension)
+        return nodes(self.unrolled.knots[self.unrolled.zero :], self.degree, self.dimension)
 
     @property
     def breaks(self) -> Array:
@@ -174,36 +173,23 @@ class SplineSpace(Frozen):
         return int(np.searchsorted(t, x, "right") - np.searchsorted(t, x, "left"))
 
     @property
-    def unrolled(self) -> tuple[Array, int]:
-        """An ordinary knot vector that covers the domain, and the index in it of knot 0.
+    def joints(self) -> tuple[Array, Array]:
+        """The distinct knots where pieces meet, and multiplicities: those in the domain; of a period the seam too."""
+        if self.periodic:
+            return distinct(self.knots[:-1])
+        a, b = self.domain
+        return distinct(self.knots[(self.knots > a) & (self.knots < b)])
 
-        The knots themselves, and 0, unless periodic: then `degree + 1` knots go before the period, and
-        `2 · degree + 2` follow.
-        """
-        if not self.periodic:
-            return self.knots, 0
-        k = self.order
-        unrolled: tuple[Array, int] = self.cached("unrolled", lambda: (self.turns(-k, self.dimension + 2 * k), k))
-        return unrolled
+    @property
+    def unrolled(self) -> Unrolled:
+        """Ordinary knots that cover the domain, and the way back; kept, as most work on a period starts there."""
+        found: Unrolled = self.cached("unrolled", self._unrolled)
+        return found
 
-    def turns(self, lo: int, hi: int) -> Array:
-        """Return knots lo … hi of the periodic sequence: t[i + dimension] = t[i] + period."""
-        t, n = self.knots, self.dimension
-        turn, index = np.divmod(np.arange(lo, hi + 1), n)
-        if self.exact:
-            turn = turn.astype(object)
-        return turned(t[index], turn, t[0], t[-1])
-
-    def images(self, x: Array) -> tuple[Array, int]:
-        """Return sorted knots of the half-open period repeated over `unrolled`, and how many of them lie before it."""
-        t, zero = self.unrolled
-        if not len(x):
-            return x, 0
-        before, after = 1 + zero // self.dimension, 1 + (len(t) - zero) // self.dimension
-        turns = [turned(x, np.array(turn), *self.knots[[0, -1]]) if turn else x for turn in range(-before, after + 1)]
-        repeated = np.concatenate(turns)
-        cut = int(np.searchsorted(repeated, t[0], "left"))
-        return repeated[cut : np.searchsorted(repeated, t[-1], "right")], before * len(x) - cut
+    def _unrolled(self) -> Unrolled:
+        if self.periodic:
+            return Unrolled.around(self.degree, self.knots)
+        return Unrolled(self.degree, self.dimension, self.knots)
 
     @property
     def removable(self) -> Array:
@@ -214,10 +200,6 @@ class SplineSpace(Frozen):
             inside = np.ones(len(self.knots), bool)
             inside[[0, -1]] = False
         return inside
-
-    def wrapped(self, first: int, count: int) -> Array:
-        """Return the indices of the control points `first` … `first + count - 1`, taken around the period."""
-        return np.arange(first, first + count) % self.dimension
 
     def cached(self, name: str, make: Callable[[], Any]) -> Any:
         """Return what `make` gave the first time."""
@@ -327,11 +309,37 @@ class SplineSpace(Frozen):
 
     def new_knots(self, knots: Any) -> Array:
         """Return knots inside the domain sorted, or raise; in a period, the seam counts at its start."""
-        x = new_knots(knots, self.knots, self.domain)
-        if self.periodic and len(x) and x[-1] == self.knots[-1]:
-            seam = np.searchsorted(x, self.knots[-1], "left")
+        x = self.inside(knots)
+        if not self.periodic or not len(x):
+            return x
+        b = self.knots[-1]
+        if x[-1] == b:
+            seam = np.searchsorted(x, b, "left")
             x = np.concatenate([np.repeat(self.knots[:1], len(x) - seam), x[:seam]])
+        require_apart(merged(self.knots, x), self.degree)
         return x
+
+    def inside(self, knots: Any) -> Array:
+        """Return a number or a list of knots in any order as a sorted array; raise unless they are in the domain."""
+        x = sorted_list(knots, "new knots", self.knots)
+        a, b = self.domain
+        if len(x) and (x[0] < a or x[-1] > b):
+            x = self.rounded_inside(x)
+            if x[0] < a or x[-1] > b:
+                raise KnotError(f"knot {x[0] if x[0] < a else x[-1]} is outside the domain [{a}, {b}]")
+        return x
+
+    def rounded_inside(self, x: Array) -> Array:
+        """Return floats with those that rounding took beyond an end of the domain put there; others stay as they are.
+
+        What comes of a + s·(b − a) is off by a rounding of the larger end; 4 of them are taken for the end itself.
+        """
+        if x.dtype == object or self.exact:
+            return x
+        a, b = self.domain
+        most = 4 * math.ulp(max(abs(a), abs(b)))
+        inside = np.where((x < a) & (x >= a - most), a, x)
+        return np.where((x > b) & (x <= b + most), b, inside)
 
     def without_knots(self, knots: Any) -> SplineSpace:
         """Return the space with fewer knots.
@@ -341,7 +349,7 @@ class SplineSpace(Frozen):
         KnotError
             If a knot is not there as often as it is to be removed, or if removing it would change the domain.
         """
-        x = some_knots(knots, "knots to remove", self.knots)
+        x = sorted_list(knots, "knots to remove", self.knots)
         if self.periodic:
             x = np.sort(np.where(x == self.knots[-1], self.knots[0], x))
         a, b = self.domain
@@ -388,11 +396,7 @@ def require_one_end(knots: Array, degree: int) -> None:
             f"the end {knots[-1]} of the period is given {int(np.sum(knots == knots[-1]))} times; expected once: "
             f"the seam is counted at the start of the period"
         )
-    turns = 2 + 3 * (degree + 1) // (len(knots) - 1)
-    if knots.dtype != object:
-        a, b = knots.item(0), knots.item(-1)
-        if not math.isfinite(max(abs(a), abs(b)) + turns * (b - a)):
-            raise KnotError(f"the period [{a}, {b}] continued around the seam overflows float64")
+    require_apart(knots, degree)
 
 
 def _require_dimension(degree: int, n: int, least: int) -> None:

@@ -164,7 +164,9 @@ class Kernel:
         """A hash of the source, of all kernels below it and of the constants they use."""
         import hashlib
 
-        hasher = hashlib.sha256(repr((OPTIONS, self.source.__module__)).encode())  # Numba's cache names the module
+        # Numba's cache names the module; its own variable makes every index checked
+        how = (OPTIONS, self.source.__module__, os.environ.get("NUMBA_BOUNDSCHECK", ""))
+        hasher = hashlib.sha256(repr(how).encode())
         _hash_code(hasher, self.source.__code__)
         hasher.update(repr(self.source.__defaults__).encode())
         for name in self.source.__code__.co_names:

@@ -18,7 +18,7 @@ from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import ParameterError
 from knotwork.insertion.merge import BLOCK, discrete_bsplines
-from knotwork.knots import merged, old_among, old_is_next
+from knotwork.knots import distinct, merged, old_among, old_is_next
 from knotwork.linear.banded import Banded, along, as_blocks, combination
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -130,11 +130,9 @@ def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
 
 
 def _once(spline: Spline, axis: int) -> Spline:
-    space, P = spline.spaces[axis], as_blocks(spline.coefficients, axis)
+    space = spline.spaces[axis]
     target, T, W, lo = _raised_knots(space)
-    t, zero = space.unrolled
-    if space.periodic:
-        P = np.ascontiguousarray(P[:, space.wrapped(-zero, len(t) - space.degree - 1)])
+    t, P = space.unrolled.knots, space.unrolled.points(as_blocks(spline.coefficients, axis))
     A, _, B = P.shape
     rows, n = target.dimension, space.degree
     out = empty((A, rows, B), P.dtype)
@@ -153,13 +151,11 @@ def _once(spline: Spline, axis: int) -> Spline:
 def raised(space: SplineSpace) -> tuple[SplineSpace, Banded]:
     """Return the space of one degree more that holds `space`, and the matrix that takes control points there."""
     target, T, W, lo = _raised_knots(space)
-    t, zero = space.unrolled
+    t = space.unrolled.knots
     start, count, E, *some = _room(target.dimension, space.degree, t.dtype)
     none = np.empty((0, 0, 1)), np.empty((0, target.dimension, 1))
     raise_degree(T, t, W, space.degree, lo, *none, start, count, E, *some, extent(1))
-    if space.periodic:
-        start = (start - zero) % space.dimension
-    return target, Banded.packed(start, count, E, space.dimension, wraps=space.periodic)
+    return target, Banded.packed(space.unrolled.own(start), count, E, space.dimension, wraps=space.periodic)
 
 
 def _room(rows: int, n: int, dtype: np.dtype[Any]) -> tuple[Array, ...]:
@@ -171,22 +167,15 @@ def _room(rows: int, n: int, dtype: np.dtype[Any]) -> tuple[Array, ...]:
 def _raised_knots(space: SplineSpace) -> tuple[SplineSpace, Array, Array, int]:
     """Return the raised space, the unrolled knots merged with each break once, these, and the first raised function."""
     n = space.degree
-    t, zero = space.unrolled
+    t = space.unrolled.knots
     if space.periodic:
-        once = _once_each(space.knots[:-1])
+        once = space.joints[0]
         knots = np.append(merged(space.knots[:-1], once), space.knots[-1:])
-        W, before = space.images(once)
-        return SplineSpace.trusted(n + 1, knots, True), merged(t, W), W, zero + before
+        W, _, lo = space.unrolled.refinement(once)
+        return SplineSpace.trusted(n + 1, knots, True), merged(t, W), W, lo
     # the functions of degree n + 1 that live in the domain
-    W = _once_each(t)
+    W = distinct(t)[0]
     T = merged(t, W)
     a, b = space.domain
     lo, end = int(np.searchsorted(T, a, "right")) - n - 2, int(np.searchsorted(T, b, "left")) + n + 2
     return SplineSpace.trusted(n + 1, T[lo:end].copy()), T, W, lo
-
-
-def _once_each(t: Array) -> Array:
-    """Return sorted knots without repetition."""
-    first = np.ones(len(t), bool)
-    first[1:] = t[1:] != t[:-1]
-    return t[first]

@@ -190,9 +190,7 @@ def by_least_squares(spline: Spline, axis: int, target: SplineSpace, ends: str =
     finer = common_refinement(space, target)
     c = embedding(space, finer).apply(spline.coefficients, axis)
     A = embedding(target, finer)
-    t, zero = finer.unrolled
-    k, rows = finer.order, finer.dimension
-    weight = t[zero + k : zero + k + rows] - t[zero : zero + rows]
+    weight = finer.unrolled.supports
     if not target.exact:
         weight = weight / weight.max()
 

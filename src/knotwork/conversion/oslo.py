@@ -178,7 +178,7 @@ def least_pieces(space: SplineSpace, target: SplineSpace) -> Pieces:
         raise KnotError(f"from degree {space.degree} to degree {target.degree}: expected equal degrees")
     require_convertible(space, target)
     n = space.degree
-    (U, zero), (t, at) = space.unrolled, target.unrolled
+    U, zero, t, at = space.unrolled.knots, space.unrolled.zero, target.unrolled.knots, target.unrolled.zero
     first, last = zero if space.periodic else n, len(U) - n - 2
     while U[first] == U[first + 1]:
         first += 1
@@ -212,23 +212,19 @@ def conversion_matrix(space: SplineSpace, target: SplineSpace, pieces: Pieces | 
     """
     mu = (pieces or least_pieces(space, target)).mu
     n, rows = space.degree, target.dimension
-    (U, zero), (t, at) = space.unrolled, target.unrolled
+    U, t, at = space.unrolled.knots, target.unrolled.knots, target.unrolled.zero
     dtype = np.result_type(U.dtype, t.dtype)
     start, count, E = np.empty(rows, np.intp), np.empty(rows, np.intp), empty((rows, n + 1), dtype)
     oslo_1(U, mu, t, at, n, start, count, E, np.empty(n + 1, dtype))
-    if space.periodic:
-        start = (start - zero) % space.dimension
-    return Banded.packed(start, count, E, space.dimension, wraps=space.periodic)
+    return Banded.packed(space.unrolled.own(start), count, E, space.dimension, wraps=space.periodic)
 
 
 def converted(space: SplineSpace, target: SplineSpace, P: Array, axis: int, pieces: Pieces | None = None) -> Array:
     """Return coefficients over `target` of those over `space` along one axis, without the matrix: Oslo 2 (5.18)."""
     mu = (pieces or least_pieces(space, target)).mu
     n = space.degree
-    (U, zero), (t, at) = space.unrolled, target.unrolled
-    blocks = as_blocks(P, axis)
-    if space.periodic:
-        blocks = np.ascontiguousarray(blocks[:, space.wrapped(-zero, len(U) - n - 1)])
+    U, t, at = space.unrolled.knots, target.unrolled.knots, target.unrolled.zero
+    blocks = space.unrolled.points(as_blocks(P, axis))
     A, _, B = blocks.shape
     out = empty((A, target.dimension, B), P.dtype)
     room = np.empty((n + 1, B), P.dtype), np.empty(n + 1, np.result_type(U.dtype, t.dtype))

@@ -122,11 +122,12 @@ def _curve(points: Array, block: list[int], repeats: Repeats) -> Spline:
         points = points[moves]
     if len(points) < 2:
         raise FileError(f"line {block[0] + 1}: a polyline of one point; expected two or more different ones")
+    closed = len(points) > 3 and bool((points[0] == points[-1]).all())
     with np.errstate(over="ignore"):
-        t = increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1))
+        t = increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), closed)
     if not np.isfinite(t[-1]):
         raise FileError(f"line {block[0] + 1}: the length of this polyline overflows float64")
-    if len(points) > 3 and (points[0] == points[-1]).all():
+    if closed:
         return Spline(SplineSpace(1, t, periodic=True), points[1:])
     return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)
 

@@ -6,13 +6,19 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 
+#: the least length of a piece of a closed curve, as a part of the whole: more than a period needs between its knots
+SHORTEST = 2.0**-28
 
-def increasing(lengths: Array) -> Array:
+
+def increasing(lengths: Array, closed: bool = False) -> Array:
     """Return 0 and the sums of the first 1, 2, … lengths, each (if finite) at least the next float after the last.
 
-    So breaks differ where points do, even where a length is lost in rounding.
+    So breaks differ where points do, even where a length is lost in rounding; those of a period, by what can be
+    continued around its seam.
     """
     with np.errstate(over="ignore"):
+        if closed:
+            lengths = np.maximum(lengths, SHORTEST * lengths.sum())
         t = np.concatenate([[0.0], np.cumsum(lengths)])
     if not np.isfinite(t[-1]):
         return t

@@ -10,7 +10,7 @@ from knotwork.arithmetic.arrays import Array, exact, numbers, real_numbers
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.face import insert
 from knotwork.insertion.merge import refined
-from knotwork.knots import distinct, multiplicities, new_knots, sorted_knots
+from knotwork.knots import distinct, multiplicities, sorted_knots
 from knotwork.linear.banded import along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -165,7 +165,7 @@ def from_bezier(nets: Any, breaks: Any, rational: bool = False) -> Spline:
 def _inside(space: SplineSpace, u: Any) -> Any:
     """Return one parameter value in the arithmetic of the space, or raise if it is outside the domain."""
     try:
-        x = new_knots(u, space.knots, space.domain)
+        x = space.inside(u)
     except KnotError as exc:
         raise ParameterError(str(exc).replace("knot", "parameter")) from None
     if len(x) != 1:
@@ -197,9 +197,8 @@ def _opened(space: SplineSpace, P: Array, axis: int) -> tuple[SplineSpace, Array
     """Return a periodic space and coefficients over one period as ordinary ones: knots continue beyond both ends."""
     if not space.periodic:
         return space, P
-    n, (t, zero) = space.degree, space.unrolled
-    knots = t[zero - n : zero + space.dimension + n + 1].copy()
-    return SplineSpace.trusted(n, knots), np.take(P, space.wrapped(-n, space.dimension + n), axis)
+    knots, blocks = space.unrolled.opened(as_blocks(P, axis))
+    return SplineSpace.trusted(space.degree, knots.copy()), along(blocks, P, axis)
 
 
 def _two_turns(spline: Spline, axis: int) -> Spline:

@@ -21,7 +21,7 @@ def insert_one(spline: Spline, u: float, axis: int) -> Spline:
     t, n = space.knots, space.degree
     N = len(t) - n - 1
     if not t[n] <= u <= t[N]:
-        space.new_knots(u)  # says what is wrong with it
+        u = space.new_knots(u).item()  # an end that was missed by rounding, or an error
     blocks = as_blocks(P, axis)
     A, _, B = blocks.shape
     W = np.empty((A, N + 1, B), P.dtype)
@@ -46,38 +46,22 @@ def refine_to(spline: Spline, axis: int, target: SplineSpace, new: Array) -> Spl
 
 def _refined(spline: Spline, axis: int, new: Array) -> tuple[Array, Array]:
     """Return the knots on one axis and the coefficients after inserting sorted knots inside the domain."""
-    space, P = spline.spaces[axis], as_blocks(spline.coefficients, axis)
-    n, rows = space.degree, space.dimension + len(new)
+    space, unrolled = spline.spaces[axis], spline.spaces[axis].unrolled
+    P = unrolled.points(as_blocks(spline.coefficients, axis))
+    rows = space.dimension + len(new)
+    W, stop, lo = unrolled.refinement(new)
+    T, out = refined(unrolled.knots, W, stop, space.degree, P, lo, rows)
     if space.periodic:
-        t, W, stop, lo, left = around(space, new)
-        P = np.ascontiguousarray(P[:, space.wrapped(-left, len(t) - n - 1)])
-        T, out = refined(t, W, stop, n, P, lo, rows)
         T = T[: rows + 1].copy()
-    else:
-        T, out = refined(space.knots, new, space.dimension, n, P, 0, rows)
     return T, along(out, spline.coefficients, axis)
-
-
-def around(space: SplineSpace, new: Array) -> tuple[Array, Array, int, int, int]:
-    """Return a periodic space's knots unrolled, its new knots likewise, and where knot 0 stands in the merge of both.
-
-    The merge puts old knots before equal new ones everywhere: `stop` is beyond the end. The last two numbers are the
-    merged knots and the old knots before knot 0.
-    """
-    t, left = space.unrolled
-    W, before = space.images(new)
-    return t, W, len(t), left + before, left
 
 
 def matrix_to(space: SplineSpace, refined: SplineSpace, new: Array) -> Banded:
     """Return the insertion matrix to `refined`, which has the sorted knots `new` in addition (trusted)."""
-    n = space.degree
-    if not space.periodic:
-        start, count, E = rows_of_matrix(space.knots, new, space.dimension, n, 0, refined.dimension)
-        return Banded.packed(start, count, E, space.dimension)
-    t, W, stop, lo, left = around(space, new)
-    start, count, E = rows_of_matrix(t, W, stop, n, lo, refined.dimension)
-    return Banded.packed((start - left) % space.dimension, count, E, space.dimension, wraps=True)
+    unrolled = space.unrolled
+    W, stop, lo = unrolled.refinement(new)
+    start, count, E = rows_of_matrix(unrolled.knots, W, stop, space.degree, lo, refined.dimension)
+    return Banded.packed(unrolled.own(start), count, E, space.dimension, wraps=space.periodic)
 
 
 def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:

@@ -110,10 +110,7 @@ def _piece(space: SplineSpace, interval: Any) -> int:
 
 def _local(space: SplineSpace, piece: int) -> tuple[Array, Array]:
     """Return the 2n knots around an interval, and the indices of its n + 1 control points."""
-    t, left = space.unrolled
-    n = space.degree
-    q = int(np.searchsorted(t, space.breaks[piece], "right")) - 1
-    return t[q - n + 1 : q + n + 1], space.wrapped(q - n - left, n + 1)
+    return space.unrolled.interval(space.breaks[piece])
 
 
 def _meant(space: SplineSpace, U: Array) -> int:
@@ -127,7 +124,7 @@ def _meant(space: SplineSpace, U: Array) -> int:
     if finite.dtype.kind == "c":
         raise ParameterError("complex arguments lie in no interval; give `interval`")
     u = np.sort(finite[:, 0] / finite[:, 1])
-    t, lo, hi = space.unrolled[0], u[0], u[-1]
+    t, lo, hi = space.unrolled.knots, u[0], u[-1]
     said = ", ".join(map(written, U))
 
     def count(values: Array, x: Any) -> int:

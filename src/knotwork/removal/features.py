@@ -75,17 +75,15 @@ def at_ends(space: SplineSpace, ends: Any, pinned: Array) -> None:
 
 def _pin_interval(space: SplineSpace, low: Any, high: Any, pinned: Array) -> None:
     """Mark all control points that act somewhere in [low, high], seen from both sides."""
-    t, zero = space.unrolled
-    n, N = space.degree, space.dimension
+    t, n = space.unrolled.knots, space.degree
     i = np.arange(len(t) - n - 1)
     act = (t[i] <= high) & (t[i + n + 1] >= low)
-    pinned[(i[act] - zero) % N if space.periodic else i[act]] = True
+    pinned[space.unrolled.own(i[act])] = True
 
 
 def _pin_points(space: SplineSpace, corners: Array, pinned: Array) -> None:
     """Mark the control points that are the points at knots of full multiplicity."""
-    n = space.degree
-    t, zero = space.unrolled
+    n, t, zero = space.degree, space.unrolled.knots, space.unrolled.zero
     for i in range(zero, zero + space.dimension):
         if n and t[i + 1] == t[i + n] and t[i + 1] in corners:
             pinned[i - zero] = True

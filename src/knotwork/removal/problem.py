@@ -59,9 +59,7 @@ class Original:
         self.allowed = np.maximum(given, self.floor)
         self.shape = as_blocks(spline.coefficients, axis).shape
         self.d = self._as_curve(spline.coefficients)
-        t, zero = self.space.unrolled
-        N = self.space.dimension
-        self.weight = (t[zero + n + 1 : zero + N + n + 1] - t[zero : zero + N]) / (n + 1)
+        self.weight = self.space.unrolled.supports / (n + 1)
         if not self.exact:
             self.weight = self.weight / self.weight.max()
         if spline.rational:
@@ -185,21 +183,19 @@ class Original:
     def costs(self, trial: Trial, values: Array, copies: Array) -> Array:
         """Return the cost of each copy of the knots `values` in a fit."""
         space = trial.spline.spaces[self.axis]
-        t, zero = space.unrolled
+        unrolled, n = space.unrolled, space.degree
         c = trial.spline.coefficients
         if self.spline.rational:  # about the centre, so that the origin does not matter
             points = self.spline.points.reshape(-1, self.spline.dim)
             low, high = points.min(axis=0), points.max(axis=0)
             c = np.concatenate([c[..., :-1] - (low + (high - low) / 2) * c[..., -1:], c[..., -1:]], axis=-1)
-        d = self._as_curve(c)
-        if space.periodic:
-            d = d[space.wrapped(-zero, len(t) - space.degree - 1)]
-        last = zero + np.searchsorted(space.knots, values, "right") - 1
+        d = unrolled.points(self._as_curve(c)[None])[0]
+        last = unrolled.zero + np.searchsorted(space.knots, values, "right") - 1
         # knots at the ends of a domain that is not clamped lack neighbours to be ranked by: they are tried first
         a, b = space.domain
         inner = (values > a) & (values < b) | space.periodic
         costs = np.zeros(copies.sum())
-        costs[np.repeat(inner, copies)] = ranked(t, d, space.degree, last[inner], copies[inner], self.scale)
+        costs[np.repeat(inner, copies)] = ranked(unrolled.knots, d, n, last[inner], copies[inner], self.scale)
         return costs
 
 

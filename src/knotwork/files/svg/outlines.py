@@ -36,7 +36,7 @@ def _curve(path: Subpath, place: Affine) -> Spline | None:
     if not len(nets):
         return None
     chord = np.hypot(*(nets[:, -1] - nets[:, 0]).T)
-    t = increasing(chord / 2 + polygon / 2)
+    t = increasing(chord / 2 + polygon / 2, path.closed)
     if not np.isfinite(t[-1]):
         raise FileError("the outline is longer than float64 can say")
     return _joined(nets, t, path.closed)

@@ -18,7 +18,7 @@ from knotwork.errors import ParameterError
 from knotwork.insertion.methods import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
 from knotwork.insertion.methods.predictions import Formula, Size
 from knotwork.insertion.methods.problem import Problem, in_real_coordinates
-from knotwork.insertion.refinement import around, missing_knots, refine_to
+from knotwork.insertion.refinement import missing_knots, refine_to
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -103,11 +103,12 @@ def problem_of(spline: Spline, axis: int, new: Array, merged: Array | None = Non
     P = in_real_coordinates(blocks.transpose(1, 0, 2).reshape(blocks.shape[1], -1))
     if not space.periodic:
         return Problem(space.knots, new, P, n, merged), slice(None)
-    U, W, _, first, left = around(space, new)
+    U = space.unrolled.knots
+    W, _, first = space.unrolled.refinement(new)
     N = len(U) - n - 1
     lo, hi = np.searchsorted(W, U[n], "left"), np.searchsorted(W, U[N], "right")
     start = first - int(lo)
-    return Problem(U, W[lo:hi], P[space.wrapped(-left, N)], n), slice(start, start + len(P) + len(new))
+    return Problem(U, W[lo:hi], space.unrolled.points(P[None])[0], n), slice(start, start + len(P) + len(new))
 
 
 def _in_three_forms(

@@ -16,7 +16,7 @@ from knotwork.errors import KnotError, ParameterError
 from knotwork.insertion.methods.forms import divide, division_triangle
 from knotwork.insertion.methods.perspectives import by_intervals, by_vertices
 from knotwork.insertion.methods.problem import in_real_coordinates
-from knotwork.knots import some_knots
+from knotwork.knots import sorted_list
 from knotwork.schemes import copy, copy_points, factored, triangle
 from knotwork.spline import Spline
 
@@ -198,12 +198,11 @@ class Startup:
         breaks = space.breaks
         if whole(interval, "interval", 0, ParameterError) > len(breaks) - 2:
             raise ParameterError(f"interval {interval} given; expected an integer of 0 … {len(breaks) - 2}")
-        t, left = space.unrolled
         n = space.degree
-        q = int(np.searchsorted(t, breaks[interval], "right")) - 1
         self.ends = breaks[interval], breaks[interval + 1]
-        self.left, self.right = t[q - n + 1 : q + 1], t[q + 1 : q + n + 1]
-        points = spline.coefficients[space.wrapped(q - n - left, n + 1)]
+        t, own = space.unrolled.interval(breaks[interval])
+        self.left, self.right = t[:n], t[n:]
+        points = spline.coefficients[own]
         self.dtype, self.shape = points.dtype, points.shape[1:]
         self.edge = in_real_coordinates(points.reshape(n + 1, -1)).copy()
         self.last = self.edge[n:].copy()
@@ -225,7 +224,7 @@ class Startup:
     def vertices(self, knots: Any) -> Array:
         """Return the control points over the knots of the interval with these in it: degree + 1 + len(knots) points."""
         n, (lo, hi) = len(self.left), self.ends
-        new = some_knots(knots, "knots", self.left)
+        new = sorted_list(knots, "knots", self.left)
         if len(new) and not lo <= new[0] <= new[-1] <= hi:
             outside = new[0] if new[0] < lo else new[-1]
             raise KnotError(f"knot {outside} given; expected knots in the interval [{lo}, {hi}]")
