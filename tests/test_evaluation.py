@@ -17,6 +17,7 @@ import knotwork as kw
 import oracle
 import strategies as kinds
 from knotwork import Spline, SplineSpace
+from knotwork.errors import ParameterError
 
 F = Fraction
 EPS = np.finfo(float).eps

@@ -20,6 +20,8 @@ from knotwork.space import SplineSpace
 CHUNK = 2048
 #: steps from the interval of one sorted parameter to that of the next, before it is searched for
 WALK = 8
+#: coefficients of a period are gathered if this many times those that are used are fewer than all: copying is quick
+FEW = 16
 
 
 @kernel
@@ -190,7 +192,7 @@ def scattered(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Arra
     except ValueError:
         raise ParameterError(f"parameters of shapes {[v.shape for v in x]} do not broadcast") from None
     shape, count = wide[0].shape, wide[0].size
-    few = [space.periodic and count * space.order < space.dimension for space in spaces]
+    few = [space.periodic and FEW * count * space.order < space.dimension for space in spaces]
     P = _padded(spaces, coefficients, few)
     width = math.prod(P.shape[k:])
     out = empty((*(order + 1,) * k, count, width), P.dtype)

@@ -20,7 +20,7 @@ from knotwork.knots import (
     sorted_knots,
     sorted_list,
 )
-from knotwork.unrolled import Unrolled, require_apart
+from knotwork.unrolled import Unrolled, reach, require_apart
 from knotwork.value import Frozen
 
 _set = object.__setattr__
@@ -316,7 +316,9 @@ class SplineSpace(Frozen):
         if x[-1] == b:
             seam = np.searchsorted(x, b, "left")
             x = np.concatenate([np.repeat(self.knots[:1], len(x) - seam), x[:seam]])
-        require_apart(merged(self.knots, x), self.degree)
+        after = np.searchsorted(self.knots, x)
+        beside = self.knots[np.sort(np.concatenate([np.maximum(after - 1, 0), after]))]
+        require_apart(merged(beside, x), reach(self.knots, self.degree))
         return x
 
     def inside(self, knots: Any) -> Array:
@@ -396,7 +398,7 @@ def require_one_end(knots: Array, degree: int) -> None:
             f"the end {knots[-1]} of the period is given {int(np.sum(knots == knots[-1]))} times; expected once: "
             f"the seam is counted at the start of the period"
         )
-    require_apart(knots, degree)
+    require_apart(knots, reach(knots, degree))
 
 
 def _require_dimension(degree: int, n: int, least: int) -> None:

@@ -115,19 +115,21 @@ def moved(knots: Array, turn: int, start: Any, end: Any) -> Array:
 
 
 def reach(knots: Array, degree: int) -> float:
-    """Return a bound on the size of a period's float knots continued around the seam."""
+    """Return a bound on the size of a period's knots continued around the seam, or raise if float64 cannot hold it."""
+    if knots.dtype == object:
+        return 0.0
     a, b = knots.item(0), knots.item(-1)
     turns = 2 + 3 * (degree + 1) // (len(knots) - 1)
-    return float(max(abs(a), abs(b)) + turns * (b - a))
+    most = float(max(abs(a), abs(b)) + turns * (b - a))
+    if not math.isfinite(most):
+        raise KnotError(f"the period [{a}, {b}] continued around the seam overflows float64")
+    return most
 
 
-def require_apart(knots: Array, degree: int) -> None:
-    """Raise unless float knots of a period and its end can be continued around the seam."""
+def require_apart(knots: Array, most: float) -> None:
+    """Raise unless distinct knots of a period of this reach are far enough apart to be continued around the seam."""
     if knots.dtype == object:
         return
-    most = reach(knots, degree)
-    if not math.isfinite(most):
-        raise KnotError(f"the period [{knots[0]}, {knots[-1]}] continued around the seam overflows float64")
     gaps = knots[1:] - knots[:-1]
     close = (gaps < SAFE * most) & (gaps > 0)
     if np.count_nonzero(close):

@@ -50,7 +50,7 @@ def test_a_row_is_the_blossom_of_the_chosen_piece(spaces):
     space, target = spaces
     old, new = oracle.Definition(space), oracle.Definition(target)
     pieces = least_pieces(space, target)
-    zero = space.unrolled[1]
+    zero = space.unrolled.zero
     matrix = conversion_matrix(space, target, pieces).toarray()
     for i, mu in enumerate(pieces.mu):
         q = mu - zero + old.zero
@@ -113,7 +113,7 @@ def test_shared_knots_about_the_piece_reduce_the_order(spaces):
 def test_the_piece_with_the_least_beta(spaces):
     """(5.30) against the largest of many values, for every piece that meets the support."""
     space, target = spaces
-    n, (U, zero), (t, at) = space.degree, space.unrolled, target.unrolled
+    n, (U, zero), (t, at) = space.degree, *((s.unrolled.knots, s.unrolled.zero) for s in (space, target))
     mu, beta = least_pieces(space, target)
     z = np.linspace(0, 1, 801)
 
