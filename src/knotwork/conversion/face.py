@@ -194,7 +194,7 @@ def by_least_squares(spline: Spline, axis: int, target: SplineSpace, ends: str =
     if not target.exact:
         weight = weight / weight.max()
 
-    kept = {0: 0, target.dimension - 1: rows - 1} if ends == "keep" else {}
+    kept = {0: 0, target.dimension - 1: finer.dimension - 1} if ends == "keep" else {}
 
     def solution(y: Array) -> Array:
         b = least_squares(A, weight, y, kept)

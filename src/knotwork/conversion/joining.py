@@ -115,7 +115,8 @@ def _less(spline: Spline, result: Spline, axis: int, orders: Array, allowed: Tol
     bound, found = coefficientwise(spline, result)
     above = (bound > allowed.given) & (found > allowed.rounding)
     far: Array = np.moveaxis(above, axis, 0).reshape(above.shape[axis], -1).any(axis=1).astype(bool)
-    t, zero = common_refinement(space, result.spaces[axis]).unrolled
+    unrolled = common_refinement(space, result.spaces[axis]).unrolled
+    t, zero = unrolled.knots, unrolled.zero
     first, last = t[zero : zero + len(far)][far], t[zero + space.order :][: len(far)][far]
     x = _breaks(space)
     near = np.zeros(len(x), bool)
