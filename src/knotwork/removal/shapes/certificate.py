@@ -1,0 +1,186 @@
+"""What the kernels of the certificate need and say: scaling, the allowance for rounding, bounds rounded outward."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
+from knotwork.removal.shapes.matching import Pair, Room, path_square
+from knotwork.removal.shapes.rematching import DEPTH, PLACES, refined
+
+#: half a unit in the last place of 1
+ROUNDING = 2.0**-53
+#: weights of one curve differ by less than this factor, so that no product of them leaves the range of float64
+WEIGHTS = 2.0**200
+
+
+class Certificate(NamedTuple):
+    """A matching path and what it proves; rounding is accounted for."""
+
+    #: upper bound on the Fréchet distance; with a tolerance a component, on each component along the path
+    bound: Any
+    #: the path: parameters of g and of f, every step inside one piece of each
+    u: Array
+    s: Array
+    #: parameters of f at which a step stays above the tolerance: more samples are needed there
+    failing: Array
+
+
+class Scaled:
+    """Two curves scaled by powers of two so that the largest coordinate is about one: nothing over- or underflows.
+
+    `f` and `g` are nets, shape (pieces, degree + 1, width); `tolerance` a number, one a component, or None.
+    `given` bounds, in each component, how far the nets are from the curves that are meant.
+    """
+
+    def __init__(self, f: Array, g: Array, tolerance: Any = None, *, rational: bool = False, given: Any = 0) -> None:
+        self.dim = f.shape[2] - rational
+        self.each = np.ndim(tolerance) == 1
+        sizes = np.stack([_sizes(c, rational) for c in (f, g)])
+        largest = sizes.max(axis=0) if self.each else np.repeat(sizes.max(), self.dim)
+        self.exponents = np.frexp(largest)[1]
+        # proof in `allowance`
+        degrees = f.shape[1] + g.shape[1] - 2
+        K = (8 * degrees + 16) if rational else (3 * degrees + 4)
+        self.slack = K * ROUNDING * np.ldexp(sizes.sum(axis=0), -self.exponents) * (1 + 2.0**-40)
+        self.slack = self.slack + np.ldexp(np.broadcast_to(given, (self.dim,)), -self.exponents)
+        self.metric = np.ones(self.dim)
+        reach = math.inf
+        if self.each:
+            self.metric = np.minimum(np.ldexp(1.0, self.exponents) / np.maximum(tolerance, 5e-324), 2.0**300) ** 2
+            reach = 1.0
+        elif tolerance is not None:
+            reach = math.ldexp(float(tolerance), -int(self.exponents[0]))
+        self.outward = 1 + (self.dim + 6) * 2 * ROUNDING
+        reach = max(reach / self.outward - self.allowance, 0.0)
+        self.target = reach * reach / self.outward
+        self.pair = Pair(
+            _scaled(f, self.exponents), _scaled(g, self.exponents), self.metric,
+            _products(g.shape[1] - 1, f.shape[1] - 1) if rational else np.zeros((0, 0)),
+            extent(self.dim), extent(f.shape[2]),
+        )  # fmt: skip
+        self.room = room_for(f.shape[1] - 1, g.shape[1] - 1, f.shape[2])
+
+    @property
+    def allowance(self) -> float:
+        """What rounding can add to a distance by the metric.
+
+        With ε = 2⁻⁵³, each level of a blossom at arguments in [0, 1] errs by at most 3 ε M, M the largest coordinate, and each
+        step of degree raising too; there are at most as many as the higher degree. The difference errs by ε (M + M')
+        more: together at most (3 max(p, q) + 2) ε (M + M') in a component. With weights, every number is a sum of
+        positive multiples of w P, whose errors are relative to w: each of the p + q levels errs by 3 ε in the numerators
+        and in the denominators, a sum of at most min(p, q) + 1 products by that many ε and 6 more: less than
+        (8 (p + q) + 16) ε (M + M'). Terms of second order are in the last factor of the slack.
+        """
+        return math.sqrt(float(np.sum(self.metric * self.slack * self.slack))) * (1 + 2.0**-40)
+
+    def bound(self, u: Array, s: Array) -> Any:
+        """Return the proven bound of a path: a number, or one a component; inf if the path is not one."""
+        widest = np.zeros(self.dim)
+        square = path_square(self.pair, self.room, u, s, widest)
+        if not square >= 0:
+            return np.full(self.dim, math.inf) if self.each else math.inf
+        if self.each:
+            return np.ldexp((widest + self.slack) * self.outward, self.exponents)
+        return math.ldexp((math.sqrt(square) + self.allowance) * self.outward, int(self.exponents[0]))
+
+    def refined(self, u: Array, s: Array) -> tuple[Array, Array, Array]:
+        """Return a finer path, below the tolerance where it can be, and the parameters of f where it is not."""
+        size = 2 * (len(u) + len(self.pair.f) + len(self.pair.g)) + 4 * PLACES + DEPTH
+        while True:
+            U, S, failing = np.empty(size), np.empty(size), np.empty(max(len(u) - 1, 0))
+            count = refined(self.pair, self.room, self.target, u, s, U, S, failing)
+            if count > 0:
+                return U[:count].copy(), S[:count].copy(), failing[failing >= 0]
+            size *= 2
+
+
+def certify(f: Array, g: Array, u: Array, s: Array, tolerance: Any, *, rational: bool = False) -> Certificate:
+    """Bound the distance of two curves along a matching path, refined where it exceeds the tolerance.
+
+    Parameters
+    ----------
+    f, g : ndarray, shape (N, degree + 1, width)
+        Bézier nets of the two curves, float64; homogeneous, weights last, if `rational`.
+    u, s : ndarray
+        The path: nondecreasing parameters of g and of f, from end to end. For closed curves they may start anywhere in
+        the first turn and end one turn later.
+    tolerance : float or ndarray, shape (d,)
+        Euclidean, or one a component.
+
+    Returns
+    -------
+    Certificate
+        Its `bound` holds whether or not it is within the tolerance.
+    """
+    scaled = Scaled(f, g, tolerance, rational=rational)
+    U, S, failing = scaled.refined(u, s)
+    return Certificate(scaled.bound(U, S), U, S, failing)
+
+
+def exact_square(f: Array, g: Array, u: Array, s: Array, *, rational: bool = False) -> tuple[Fraction, Array]:
+    """Return the square of the bound of a path over Fractions, and the bound of each component; (-1, …) if it is none."""
+    d, width = f.shape[2] - rational, f.shape[2]
+    p, q = g.shape[1] - 1, f.shape[1] - 1
+    ones = np.array([Fraction(1)] * d, object)
+    product = _exact_products(p, q) if rational else np.zeros((0, 0), object)
+    pair = Pair(f, g, ones, product, extent(d), extent(width))
+    widest = np.array([Fraction(0)] * d, object)
+    room = Room(*(np.array([[Fraction(0)] * a.shape[1]] * len(a), object) for a in room_for(q, p, width)))
+    return path_square(pair, room, u, s, widest), widest
+
+
+def root_above(square: Fraction) -> float:
+    """Return a float not below the square root, and hardly above."""
+    try:
+        root = math.sqrt(square)
+    except OverflowError:
+        return math.inf
+    if root == 0 and square > 0:  # below the range of float64
+        root = 2.0**-537
+    while Fraction(root) ** 2 < square:
+        root = math.nextafter(root, math.inf)
+    return root
+
+
+def room_for(q: int, p: int, width: int) -> Room:
+    """Return working space for curves of degrees q and p."""
+    n = max(p, q) + 1
+    return Room(
+        np.zeros((n, width)), np.zeros((n, width)), np.zeros((n, width)), np.zeros((p + q + 1, width)),
+        np.zeros((5, width)), np.zeros((2, PLACES)), np.zeros((DEPTH + 2, 3)),
+    )  # fmt: skip
+
+
+def _sizes(c: Array, rational: bool) -> Array:
+    """Return the largest coordinate of the control points in each component."""
+    flat = c.reshape(-1, c.shape[2])
+    with np.errstate(over="ignore"):
+        points = flat[:, :-1] / flat[:, -1:] if rational else flat
+    return np.abs(points).max(axis=0, initial=0.0)
+
+
+def _scaled(c: Array, exponents: Array) -> Array:
+    """Return nets whose component d is divided by 2 to the power of its exponent; weights go up to about one."""
+    if len(exponents) == c.shape[2]:
+        return np.ldexp(c, -exponents)
+    c = np.ldexp(c, -np.frexp(c[..., -1].max())[1])
+    return np.concatenate([np.ldexp(c[..., :-1], -exponents), c[..., -1:]], axis=2)
+
+
+def _exact_products(p: int, q: int) -> Array:
+    """Return C(p, i) C(q, j) / C(p + q, i + j)."""
+    table = np.empty((p + 1, q + 1), object)
+    for i in range(p + 1):
+        for j in range(q + 1):
+            table[i, j] = Fraction(math.comb(p, i) * math.comb(q, j), math.comb(p + q, i + j))
+    return table
+
+
+def _products(p: int, q: int) -> Array:
+    return _exact_products(p, q).astype(float)
