@@ -41,13 +41,13 @@ class Scaled:
     def __init__(self, f: Array, g: Array, tolerance: Any = None, *, rational: bool = False, given: Any = 0) -> None:
         self.dim = f.shape[2] - rational
         self.each = np.ndim(tolerance) == 1
-        sizes = np.stack([_sizes(c, rational) for c in (f, g)])
-        largest = sizes.max(axis=0) if self.each else np.repeat(sizes.max(), self.dim)
+        size = np.stack([sizes(c, rational) for c in (f, g)])
+        largest = size.max(axis=0) if self.each else np.repeat(size.max(), self.dim)
         self.exponents = np.frexp(largest)[1]
         # proof in `allowance`
         degrees = f.shape[1] + g.shape[1] - 2
         K = (8 * degrees + 16) if rational else (3 * degrees + 4)
-        self.slack = K * ROUNDING * np.ldexp(sizes.sum(axis=0), -self.exponents) * (1 + 2.0**-40)
+        self.slack = K * ROUNDING * np.ldexp(size.sum(axis=0), -self.exponents) * (1 + 2.0**-40)
         self.slack = self.slack + np.ldexp(np.broadcast_to(given, (self.dim,)), -self.exponents)
         self.metric = np.ones(self.dim)
         reach = math.inf
@@ -88,6 +88,10 @@ class Scaled:
         if self.each:
             return np.ldexp((widest + self.slack) * self.outward, self.exponents)
         return math.ldexp((math.sqrt(square) + self.allowance) * self.outward, int(self.exponents[0]))
+
+    def unscaled(self, bound: float) -> float:
+        """Return a Euclidean bound in the units of the scaled curves."""
+        return math.ldexp(float(bound), -int(self.exponents[0]))
 
     def refined(self, u: Array, s: Array) -> tuple[Array, Array, Array]:
         """Return a finer path, below the tolerance where it can be, and the parameters of f where it is not."""
@@ -157,7 +161,7 @@ def room_for(q: int, p: int, width: int) -> Room:
     )  # fmt: skip
 
 
-def _sizes(c: Array, rational: bool) -> Array:
+def sizes(c: Array, rational: bool) -> Array:
     """Return the largest coordinate of the control points in each component."""
     flat = c.reshape(-1, c.shape[2])
     with np.errstate(over="ignore"):

@@ -13,7 +13,7 @@ from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.links import PART, Course, Queue, chords, matched, route
 
 #: rings of candidates around a station, as (how many, radius / ε), in the plane; more find a few links less
-RINGS = {"fast": ((6, 0.8),), "normal": ((8, 0.9),), "best": ((8, 0.5), (16, 0.8), (24, 0.98))}
+RINGS = {"fast": ((8, 0.9),), "normal": ((12, 0.95),), "best": ((8, 0.5), (16, 0.8), (24, 0.98))}
 #: stations searched at once: what bounds the memory
 CHUNK = 1 << 15
 #: what the search leaves of the tolerance for the rounding of the certificate, tried one after the other
