@@ -14,7 +14,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.matching import turn
-from knotwork.removal.shapes.rematching import apart, node_square, partner, place
+from knotwork.removal.shapes.rematching import apart, partner, place
 
 #: pairs of samples compared without a corridor, and the half-width of the corridor in samples
 PAIRS = 1 << 18
@@ -90,8 +90,7 @@ def feet(pair, room, s, u, first, last, out):  # type: ignore[no-untyped-def]
         least, best = math.inf, u[first[i]]
         for j in range(max(first[i] - 1, 0), min(last[i] + 1, len(u) - 1)):
             if u[j] < u[j + 1]:
-                t = partner(pair.f, pair.g, pair, room, s[i], u[j], u[j + 1])
-                square = node_square(pair, room, t, s[i])
+                t, square = partner(pair, room, False, s[i], u[j], u[j + 1])
                 if square < least:
                     least, best = square, t
         out[i] = best

@@ -156,8 +156,8 @@ def room_for(q: int, p: int, width: int) -> Room:
     """Return working space for curves of degrees q and p."""
     n = max(p, q) + 1
     return Room(
-        np.zeros((n, width)), np.zeros((n, width)), np.zeros((n, width)), np.zeros((p + q + 1, width)),
-        np.zeros((5, width)), np.zeros((2, PLACES)), np.zeros((DEPTH + 2, 3)),
+        np.zeros((n, width)), np.zeros((n, width)), np.zeros((n, width)), np.zeros((p + q + 2, width)),
+        np.zeros((7, width)), np.zeros((2, PLACES)), np.zeros((DEPTH + 2, 3)),
     )  # fmt: skip
 
 

@@ -40,7 +40,7 @@ class Room(NamedTuple):
     level: Array
     #: coefficients of the difference
     E: Array
-    #: points and a derivative, five rows
+    #: points and a derivative, seven rows
     points: Array
     #: nodes (u, s), one column a place
     places: Array
@@ -147,15 +147,8 @@ def largest_square(E, m, metric, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def step_square(pair, room, a, b, x, y):  # type: ignore[no-untyped-def]
-    """Return the square of the largest coefficient of g - f on a step."""
-    m = difference(pair, room, a, b, x, y)
-    return largest_square(room.E, m, pair.metric, pair.D)
-
-
-@kernel
 def path_square(pair, room, u, s, widest):  # type: ignore[no-untyped-def]
-    """Return the largest `step_square` of a path and write the largest coefficient of each component.
+    """Return the largest square on the steps of a path and write the largest coefficient of each component.
 
     -1 if the path runs backwards or a step is not inside one piece of each curve.
     """

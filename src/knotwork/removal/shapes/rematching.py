@@ -8,20 +8,20 @@ from __future__ import annotations
 import math
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.matching import piece_of, step_square, turn
+from knotwork.removal.shapes.matching import difference, largest_square, piece_of, turn
 
 #: parameters tried at once where a step fails, and how often a step is halved after that
 PLACES = 16
 DEPTH = 12
 #: where the search for a nearest point starts, and its steps
 STARTS = 4
-STEPS = 3
+STEPS = 4
 
 
 @kernel
 def place(c, t, out, level, D, W):  # type: ignore[no-untyped-def]
     """Write the point of a net at t to out[0] and the derivative to out[1]."""
-    n = len(c) - 1
+    n, last = len(c) - 1, len(D)
     for j in range(n + 1):
         for e in range(len(W)):
             level[j, e] = c[j, e]
@@ -29,19 +29,14 @@ def place(c, t, out, level, D, W):  # type: ignore[no-untyped-def]
         for j in range(r):
             for e in range(len(W)):
                 level[j, e] = (1 - t) * level[j, e] + t * level[j + 1, e]
-    last = len(D)
-    for d in range(len(D)):
-        if n == 0:
-            out[0, d], out[1, d] = level[0, d], 0
-        else:
-            out[0, d] = (1 - t) * level[0, d] + t * level[1, d]
-            out[1, d] = n * (level[1, d] - level[0, d])
+    k = min(n, 1)
+    for e in range(len(W)):
+        out[0, e] = (1 - t) * level[0, e] + t * level[k, e]
+        out[1, e] = n * (level[k, e] - level[0, e])
     if len(W) > len(D):
-        w = level[0, last] if n == 0 else (1 - t) * level[0, last] + t * level[1, last]
-        slope = 0 if n == 0 else n * (level[1, last] - level[0, last])
         for d in range(len(D)):
-            out[0, d] = out[0, d] / w
-            out[1, d] = (out[1, d] - slope * out[0, d]) / w
+            out[0, d] = out[0, d] / out[0, last]
+            out[1, d] = (out[1, d] - out[1, last] * out[0, d]) / out[0, last]
 
 
 @kernel
@@ -55,65 +50,57 @@ def apart(P, Q, metric, D):  # type: ignore[no-untyped-def]
 
 @kernel
 def nearest(c, lo, hi, pair, room):  # type: ignore[no-untyped-def]
-    """Return a parameter of a net in [lo, hi] whose point is near room.points[2]: samples, then Gauss-Newton steps."""
+    """Return a parameter of a net in [lo, hi] whose point is near room.points[2], and the square of their distance.
+
+    The best of some samples, then Gauss-Newton steps from there.
+    """
     P, D = room.points, pair.D
-    best, least = lo, math.inf
-    for k in range(STARTS + 1):
-        t = lo + (hi - lo) * (k / STARTS)
+    best, least, then = lo, math.inf, lo
+    for k in range(STARTS + STEPS + 1):
+        t = lo + (hi - lo) * (k / STARTS) if k <= STARTS else then
         place(c, t, P, room.level, D, pair.W)
         square = apart(P[0], P[2], pair.metric, D)
         if square < least:
             best, least = t, square
-    t = best
-    for _ in range(STEPS):
-        place(c, t, P, room.level, D, pair.W)
-        along, speed = 0.0, 0.0
-        for d in range(len(D)):
-            along += pair.metric[d] * P[1, d] * (P[2, d] - P[0, d])
-            speed += pair.metric[d] * P[1, d] * P[1, d]
-        if not speed > 0:
+            along, speed = 0.0, 0.0
+            for d in range(len(D)):
+                along += pair.metric[d] * P[1, d] * (P[2, d] - P[0, d])
+                speed += pair.metric[d] * P[1, d] * P[1, d]
+            then = min(max(t + along / speed, lo), hi) if speed > 0 else t
+        elif k > STARTS:
             break
-        t = min(max(t + along / speed, lo), hi)
-        place(c, t, P, room.level, D, pair.W)
-        square = apart(P[0], P[2], pair.metric, D)
-        if square < least:
-            best, least = t, square
-    return best
+    return best, least
 
 
 @kernel
-def partner(first, second, pair, room, at, lo, hi):  # type: ignore[no-untyped-def]
-    """Return a parameter of the second curve in [lo, hi] near the point of the first one at `at`."""
+def partner(pair, room, of_g, at, lo, hi):  # type: ignore[no-untyped-def]
+    """Return a parameter in [lo, hi], in one piece of f, near the point of g at `at`; or of g near f, if not of_g.
+
+    And the square of the distance.
+    """
     k, i = piece_of(at), piece_of(hi)
+    first, second = (pair.g, pair.f) if of_g else (pair.f, pair.g)
     place(first[turn(k, len(first))], at - k, room.points, room.level, pair.D, pair.W)
     for d in range(len(pair.D)):
         room.points[2, d] = room.points[0, d]
-    return min(max(i + nearest(second[turn(i, len(second))], lo - i, hi - i, pair, room), lo), hi)
+    t, square = nearest(second[turn(i, len(second))], lo - i, hi - i, pair, room)
+    return min(max(i + t, lo), hi), square
 
 
 @kernel
-def node_square(pair, room, u, s):  # type: ignore[no-untyped-def]
-    """Return the square of the distance of two points of the curves."""
-    k, i = piece_of(u), piece_of(s)
-    place(pair.g[turn(k, len(pair.g))], u - k, room.points, room.level, pair.D, pair.W)
-    for d in range(len(pair.D)):
-        room.points[2, d] = room.points[0, d]
-    place(pair.f[turn(i, len(pair.f))], s - i, room.points, room.level, pair.D, pair.W)
-    return apart(room.points[0], room.points[2], pair.metric, pair.D)
+def shape_of(C, n, row, pair, room):  # type: ignore[no-untyped-def]
+    """Write the ends of a net of degree n to room.points[row] and [row + 1]; return its bend and its chord, squared.
 
-
-@kernel
-def bend(c, lo, hi, pair, room):  # type: ignore[no-untyped-def]
-    """Return the square of the distance of the middle of a step from the middle of its chord, and of the chord."""
-    P, D = room.points, pair.D
-    for row, t in ((3, lo), (4, hi)):
-        place(c, t, P, room.level, D, pair.W)
-        for d in range(len(D)):
-            P[row, d] = P[0, d]
-    place(c, (lo + hi) / 2, P, room.level, D, pair.W)
+    The bend is how far the middle control points are from the middle of the chord: a guess, to choose by.
+    """
+    P, D, last = room.points, pair.D, len(pair.D)
     for d in range(len(D)):
-        P[0, d] = 2 * P[0, d] - P[4, d]
-    return apart(P[0], P[3], pair.metric, D), apart(P[3], P[4], pair.metric, D)
+        P[0, d], P[row, d], P[row + 1, d] = C[n // 2, d] + C[(n + 1) // 2, d], C[0, d], C[n, d]
+        if len(pair.W) > len(D):
+            P[0, d] = C[n // 2, d] / C[n // 2, last] + C[(n + 1) // 2, d] / C[(n + 1) // 2, last]
+            P[row, d], P[row + 1, d] = P[row, d] / C[0, last], P[row + 1, d] / C[n, last]
+        P[0, d] = P[0, d] - P[row + 1, d]
+    return apart(P[0], P[row], pair.metric, D), apart(P[row], P[row + 1], pair.metric, D)
 
 
 @kernel
@@ -121,24 +108,26 @@ def spread(pair, room, target, a, b, x, y):  # type: ignore[no-untyped-def]
     """Write nodes (u, s) inside a step by the interval rule to room.places; tell whether each has a partner.
 
     The straighter curve counts as its chord: the points of it within the target of a point of the other are an
-    interval, the nodes are feet made monotone inside the intervals.
+    interval, the nodes are feet made monotone inside the intervals. room.F and room.G hold the nets on the step.
     """
     k, i = piece_of(b), piece_of(y)
-    g, f = pair.g[turn(k, len(pair.g))], pair.f[turn(i, len(pair.f))]
-    on_g = bend(g, a - k, b - k, pair, room)[0]
-    on_f = bend(f, x - i, y - i, pair, room)[0]
+    n = max(len(room.F), len(room.G)) - 1
+    whole = len(pair.product) == 0
+    on_g, chord_g = shape_of(room.G, n if whole else pair.g.shape[1] - 1, 3, pair, room)
+    on_f, chord_f = shape_of(room.F, n if whole else pair.f.shape[1] - 1, 5, pair, room)
     swapped = on_g < on_f
-    line, moving = (g, f) if swapped else (f, g)
-    lo, hi, first, last = (a - k, b - k, x - i, y - i) if swapped else (x - i, y - i, a - k, b - k)
-    chord = bend(line, lo, hi, pair, room)[1]
+    moving = pair.f if swapped else pair.g
+    k = i if swapped else k
+    first, last = (x - k, y - k) if swapped else (a - k, b - k)
+    chord, row = (chord_g, 3) if swapped else (chord_f, 5)
     P, N, D = room.points, room.places, pair.D
     foot = 0.0
     for n in range(1, PLACES):
-        place(moving, first + (last - first) * (n / PLACES), P, room.level, D, pair.W)
+        place(moving[turn(k, len(moving))], first + (last - first) * (n / PLACES), P, room.level, D, pair.W)
         along = 0.0
         for d in range(len(D)):
-            along += pair.metric[d] * (P[4, d] - P[3, d]) * (P[0, d] - P[3, d])
-        rest = along * along - chord * (apart(P[0], P[3], pair.metric, D) - target)
+            along += pair.metric[d] * (P[row + 1, d] - P[row, d]) * (P[0, d] - P[row, d])
+        rest = along * along - chord * (apart(P[0], P[row], pair.metric, D) - target)
         if not (chord > 0 and rest >= 0):
             return False
         foot = min(max(foot, along / chord), 1.0)
@@ -167,19 +156,18 @@ def halved(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-de
         if count + DEPTH + 2 > len(U):
             return 0
         a, x, b, y, depth = U[count - 1], S[count - 1], stack[top, 0], stack[top, 1], stack[top, 2]
-        good = failed or step_square(pair, room, a, b, x, y) <= target
+        good = failed
+        if not failed:
+            m = difference(pair, room, a, b, x, y)
+            good = largest_square(room.E, m, pair.metric, pair.D) <= target
         if not good and depth < DEPTH:
-            k, i = piece_of(b), piece_of(y)
-            on_g = bend(pair.g[turn(k, len(pair.g))], a - k, b - k, pair, room)
-            on_f = bend(pair.f[turn(i, len(pair.f))], x - i, y - i, pair, room)
-            if on_g[0] + on_g[1] > on_f[0] + on_f[1]:
-                u = (a + b) / 2
-                s = partner(pair.g, pair.f, pair, room, u, x, y)
-            else:
-                s = (x + y) / 2
-                u = partner(pair.f, pair.g, pair, room, s, a, b)
-            moves = (u > a or s > x) and (u < b or s < y)
-            if moves and node_square(pair, room, u, s) <= target:
+            on_g = apart(room.G[0], room.G[1], pair.metric, pair.D) if len(room.G) > 1 else 0.0
+            on_f = apart(room.F[0], room.F[1], pair.metric, pair.D) if len(room.F) > 1 else 0.0
+            of_g = b > a and (on_g > on_f or not y > x)
+            half = (a + b) / 2 if of_g else (x + y) / 2
+            other, square = partner(pair, room, of_g, half, x if of_g else a, y if of_g else b)
+            u, s = (half, other) if of_g else (other, half)
+            if square <= target and (u > a or s > x) and (u < b or s < y):
                 stack[top, 2] = depth + 1
                 top += 1
                 stack[top, 0], stack[top, 1], stack[top, 2] = u, s, depth + 1
@@ -195,32 +183,33 @@ def halved(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-de
 def extended(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-def]
     """Extend a path of `count` nodes by a step to (b, y) inside one piece of each curve; return the new count.
 
-    Negative if it stays above the target.
+    Negative if it stays above the target; 0 if U and S are too short.
     """
-    a, x = U[count - 1], S[count - 1]
-    if step_square(pair, room, a, b, x, y) <= target:
+    a, x, start = U[count - 1], S[count - 1], count
+    m = difference(pair, room, a, b, x, y)
+    square = largest_square(room.E, m, pair.metric, pair.D)
+    for d in range(len(pair.D)):  # the difference at both ends
+        room.E[1, d] = room.E[m - 1, d]
+    ends = largest_square(room.E, min(m, 2), pair.metric, pair.D)
+    if square <= target or ends > target:
         U[count], S[count] = b, y
-        return count + 1
-    if node_square(pair, room, b, y) > target or node_square(pair, room, a, x) > target:
-        U[count], S[count] = b, y
-        return -count - 1
-    if spread(pair, room, target, a, b, x, y):
-        start = count
-        for n in range(1, PLACES):
-            count = halved(pair, room, target, room.places[0, n], room.places[1, n], U, S, count)
-            if count <= 0:
-                break
-        if count > 0:
-            count = halved(pair, room, target, b, y, U, S, count)
-        if count >= 0:
-            return count
-        count = start
-    return halved(pair, room, target, b, y, U, S, count)
+        return count + 1 if square <= target else -count - 1
+    nodes = PLACES - 1 if spread(pair, room, target, a, b, x, y) else 0
+    n = 1
+    while n <= nodes + 1:
+        u, s = (room.places[0, n], room.places[1, n]) if n <= nodes else (b, y)
+        count = halved(pair, room, target, u, s, U, S, count)
+        n += 1
+        if count == 0:
+            return 0
+        if count < 0 and nodes > 0:  # once more without the nodes
+            count, nodes, n = start, 0, 1
+    return count
 
 
 @kernel
 def refined(pair, room, target, u, s, U, S, failing):  # type: ignore[no-untyped-def]
-    """Write a finer path to U, S whose steps are inside pieces and, where it can be, below the target; return its length.
+    """Write a finer path to U, S, its steps inside pieces and, where it can be, below the target; return its length.
 
     failing[j] is the parameter s up to which step j of the given path is proven; -1 if all of it is. 0 is returned if
     U and S are too short. Bounded: each step of the path meets at most 2 ^ (DEPTH + 1) halvings a place.
@@ -232,16 +221,16 @@ def refined(pair, room, target, u, s, U, S, failing):  # type: ignore[no-untyped
         a, x = u[j], s[j]
         while a < u[j + 1] or x < s[j + 1]:
             b, y, k, i = u[j + 1], s[j + 1], math.floor(a) + 1.0, math.floor(x) + 1.0
-            if k < b and (i >= y or (k - a) * (y - x) <= (i - x) * (b - a)):
-                b, y = k, partner(pair.g, pair.f, pair, room, k, x, min(i, y))
-            elif i < y:
-                b, y = partner(pair.f, pair.g, pair, room, i, a, min(k, b)), i
+            if k < b or i < y:  # cut at the joint of g or of f that comes first
+                of_g = k < b and (i >= y or (k - a) * (y - x) <= (i - x) * (b - a))
+                at = k if of_g else i
+                other = partner(pair, room, of_g, at, x if of_g else a, min(i, y) if of_g else min(k, b))[0]
+                b, y = (at, other) if of_g else (other, at)
             found = extended(pair, room, target, b, y, U, S, count) if count < len(U) else 0
             if found == 0:
                 return 0
+            count = abs(found)
             if found < 0:
-                found = -found
-                failing[j] = S[found - 2]
-            count = found
+                failing[j] = S[count - 2]
             a, x = b, y
     return count

@@ -1,0 +1,164 @@
+"""Polylines with few free vertices: within the tolerance, never more than before, and few."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import independent
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.distance import directed_hausdorff
+
+import oracle
+from knotwork.removal.shapes.certificate import exact_square
+from knotwork.removal.shapes.lower import fewest_pieces
+from knotwork.removal.shapes.polyline import reduce_polyline
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+def edges(points):
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def proven(points, result):
+    """Return the square of what the path proves, worked out over Fractions from the definition."""
+    if len(result.vertices) == 1:
+        return exact_square(*map(oracle.fractions, (edges(points), result.vertices[None], result.u, result.s)))[0]
+    return independent.largest_on_path(edges(points), edges(result.vertices), result.u.tolist(), result.s.tolist())[0]
+
+
+def covers(result, count):
+    """Tell whether the path runs through both curves from end to end."""
+    u, s = result.u, result.s
+    return (
+        (np.diff(u) >= 0).all()
+        and (np.diff(s) >= 0).all()
+        and (u[0], u[-1]) == (0, max(len(result.vertices) - 1, 0))
+        and s[-1] - s[0] == count - 1
+    )
+
+
+@pytest.fixture(scope="module")
+def iceland():
+    rows = (EXAMPLES / "iceland.csv").read_text(encoding="utf-8").split("x,y\n")[1].split("\n\n")[0].splitlines()
+    return np.array([[float(x) for x in row.split(",")] for row in rows])
+
+
+def test_the_coast_of_iceland(iceland):
+    result = reduce_polyline(iceland, 2.0, closed=True)
+    assert len(iceland) == 3059
+    assert fewest_pieces(iceland, 2.0, 1, closed=True) + 1 <= len(result.vertices) <= 352
+    assert result.bound <= 2
+    assert (result.vertices[0] == result.vertices[-1]).all()
+    assert covers(result, len(iceland))
+    P, Q = (independent.along(p, 20000)[0] for p in (iceland, result.vertices))
+    assert max(directed_hausdorff(P, Q)[0], directed_hausdorff(Q, P)[0]) <= 2 + 0.2
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    count=st.integers(2, 40),
+    d=st.integers(1, 4),
+    eps=st.sampled_from([0.0, 1e-300, 1e-3, 0.3, 1.0, 5.0]),
+    kind=st.sampled_from(["walk", "cloud", "grid", "equal", "spikes", "ulps"]),
+    closed=st.booleans(),
+    each=st.booleans(),
+)
+@settings(max_examples=120, deadline=None)
+def test_any_input_stays_within_the_tolerance(seed, count, d, eps, kind, closed, each):
+    rng = np.random.default_rng(seed)
+    Y = {
+        "walk": lambda: rng.standard_normal((count, d)).cumsum(axis=0),
+        "cloud": lambda: rng.standard_normal((count, d)),
+        "grid": lambda: rng.integers(-2, 3, (count, d)).astype(float),
+        "equal": lambda: np.full((count, d), 0.1),
+        "spikes": lambda: np.repeat(rng.standard_normal((count + 1) // 2), 2)[:count, None] * np.eye(1, d),
+        "ulps": lambda: 1 + rng.integers(0, 3, (count, d)) * 2.0**-52,
+    }[kind]()
+    if closed:
+        Y = np.concatenate([Y, Y[:1]])
+    tolerance = np.full(d, eps) if each else eps
+    result = reduce_polyline(Y, tolerance, closed=closed)
+    assert np.all(result.bound <= tolerance)
+    assert len(result.vertices) <= len(Y)
+    assert covers(result, len(Y))
+    bound = Fraction(float(np.linalg.norm(result.bound) * (1 + 1e-12))) if each else Fraction(result.bound)
+    assert proven(Y, result) <= bound**2
+    if closed:
+        assert (result.vertices[0] == result.vertices[-1]).all()
+        assert len(np.unique(result.vertices, axis=0)) >= min(3, len(np.unique(Y, axis=0)))
+    else:
+        assert (result.vertices[[0, -1]] == Y[[0, -1]]).all()
+
+
+@given(seed=st.integers(0, 1000), exponent=st.sampled_from([-900, -40, 1, 60, 900]))
+@settings(max_examples=15, deadline=None)
+def test_scaling_by_powers_of_two_changes_nothing(seed, exponent):
+    Y = np.random.default_rng(seed).standard_normal((60, 2)).cumsum(axis=0)
+    one, two = reduce_polyline(Y, 1.5), reduce_polyline(np.ldexp(Y, exponent), float(np.ldexp(1.5, exponent)))
+    assert (np.ldexp(one.vertices, exponent) == two.vertices).all()
+    assert (one.u == two.u).all()
+
+
+def test_what_is_kept_stays_bit_for_bit(iceland):
+    keep = np.zeros(len(iceland), bool)
+    keep[[17, 400, 401, 2000]] = True
+    for closed in (False, True):
+        result = reduce_polyline(iceland, 5.0, closed=closed, keep=keep)
+        for p in iceland[keep]:
+            assert (result.vertices == p).all(axis=1).any()
+        assert result.bound <= 5
+        assert len(result.vertices) < 160
+
+
+def test_a_straight_line_becomes_one_link_and_a_ring_has_no_seam():
+    line = np.linspace([0, 0], [30, 10], 1000)
+    assert reduce_polyline(line, 0.01).vertices.tolist() == [[0, 0], [30, 10]]
+    square = np.concatenate([np.linspace(p, q, 50)[:-1] for p, q in [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 1)), ((0, 1), (0, 0))]])
+    square = np.roll(square, 23, axis=0)  # the seam is in the middle of an edge
+    result = reduce_polyline(np.concatenate([square, square[:1]]), 0.01, closed=True)
+    assert len(result.vertices) == 5
+
+
+def test_hairpins_are_not_cut():
+    """There and back: the Hausdorff distance to the line out is zero, the Fréchet distance is not."""
+    Y = np.array([[0.0, 0], [10, 0], [0, 0.1], [10, 0.2]])
+    assert len(reduce_polyline(Y, 1.0).vertices) == 4
+    assert len(reduce_polyline(Y, 6.0).vertices) < 4
+
+
+def test_small_rings():
+    angle = np.linspace(0, 2 * np.pi, 40)
+    ring = 0.1 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    ring[-1] = ring[0]
+    kept = reduce_polyline(ring, 1.0, closed=True)
+    assert len(np.unique(kept.vertices, axis=0)) == 3
+    assert not kept.dropped
+    gone = reduce_polyline(ring, 1.0, closed=True, small="drop")
+    assert gone.dropped
+    assert gone.vertices.shape == (1, 2)
+    assert 0.1 <= gone.bound < 0.101
+    assert not reduce_polyline(ring, 0.05, closed=True, small="drop").dropped
+
+
+@given(seed=st.integers(0, 10**5))
+@settings(max_examples=25, deadline=None)
+def test_lower_bounds_are_below_what_is_found(seed):
+    rng = np.random.default_rng(seed)
+    Y = rng.standard_normal((80, 2)).cumsum(axis=0)
+    for eps in (0.5, 2.0):
+        found = reduce_polyline(Y, eps, effort="best")
+        assert fewest_pieces(Y, eps, 1) <= len(found.vertices) - 1
+        assert fewest_pieces(Y, np.full(2, eps), 1) <= fewest_pieces(Y, eps, 1)
+
+
+def test_a_zigzag_takes_a_piece_a_tooth():
+    """Teeth of height 3 and a tolerance of 1: a link cannot turn, a cubic can twice."""
+    Y = np.array([[float(i), 3.0 * (i % 2)] for i in range(31)])
+    assert fewest_pieces(Y, 1.0, 1) == 30
+    assert fewest_pieces(Y, 1.0, 3) == 10
+    assert fewest_pieces(Y, 1.51, 1) == 1
