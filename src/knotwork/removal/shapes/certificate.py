@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.arithmetic.kernel import extent
 from knotwork.removal.shapes.matching import Pair, Room, path_square
 from knotwork.removal.shapes.rematching import DEPTH, PLACES, refined
 
@@ -62,7 +61,7 @@ class Scaled:
         self.pair = Pair(
             _scaled(f, self.exponents), _scaled(g, self.exponents), self.metric,
             _products(g.shape[1] - 1, f.shape[1] - 1) if rational else np.zeros((0, 0)),
-            extent(self.dim), extent(f.shape[2]),
+            loop(self.dim), loop(f.shape[2]),
         )  # fmt: skip
         self.room = room_for(f.shape[1] - 1, g.shape[1] - 1, f.shape[2])
 
@@ -133,7 +132,7 @@ def exact_square(f: Array, g: Array, u: Array, s: Array, *, rational: bool = Fal
     p, q = g.shape[1] - 1, f.shape[1] - 1
     ones = np.array([Fraction(1)] * d, object)
     product = _exact_products(p, q) if rational else np.zeros((0, 0), object)
-    pair = Pair(f, g, ones, product, extent(d), extent(width))
+    pair = Pair(f, g, ones, product, loop(d), loop(width))
     widest = np.array([Fraction(0)] * d, object)
     room = Room(*(np.array([[Fraction(0)] * a.shape[1]] * len(a), object) for a in room_for(q, p, width)))
     return path_square(pair, room, u, s, widest), widest
@@ -150,6 +149,11 @@ def root_above(square: Fraction) -> float:
     while Fraction(root) ** 2 < square:
         root = math.nextafter(root, math.inf)
     return root
+
+
+def loop(count: int) -> Array:
+    """Return something of length `count` to loop over, not known to the compiler: so all dimensions share one code."""
+    return np.empty(count, np.int8)
 
 
 def room_for(q: int, p: int, width: int) -> Room:

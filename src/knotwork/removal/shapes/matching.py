@@ -27,7 +27,7 @@ class Pair(NamedTuple):
     metric: Array
     #: C(p, i) C(q, j) / C(p + q, i + j) for rational curves, shape (p + 1, q + 1); else of shape (0, 0)
     product: Array
-    #: tuples as long as a point and as a row of the nets
+    #: as long as a point and as a row of the nets
     D: Any
     W: Any
 
