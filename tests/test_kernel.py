@@ -23,6 +23,8 @@ from knotwork.arithmetic import kernel as kernels
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.conversion.oslo import conversion_matrix, converted
 from knotwork.insertion.methods import forms, perspectives
+from knotwork.removal.shapes.lower import fewest_pieces
+from knotwork.removal.shapes.polyline import reduce_polyline
 
 SOURCE = Path(kw.__file__).parent.parent
 
@@ -212,6 +214,19 @@ def test_plain_and_compiled_agree_on_methods_of_insertion(both, dtype):
     start.vertices(rng.random(4))
 
 
+def test_plain_and_compiled_agree_on_shapes(both):
+    rng = np.random.default_rng(7)
+    line = points(rng, np.float64, 30, 2).cumsum(axis=0)
+    line[-1] = line[0]
+    for closed in (True, False):
+        reduce_polyline(line, 1.0, closed=closed)
+    fewest_pieces(line, 1.0, 1)
+    a = kw.curve(line[:7], 3)
+    for b in (kw.insert(a, [0.3]), kw.curve(line[:7] + 0.01, 1), kw.curve(line[:7], 3, weights=1 + rng.random(7))):
+        kw.distance_bound(a, b)
+    kw.distance_bound(a, kw.curve(line[:7] + 0.1, 2), [0.5, 0.5])
+
+
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone
 TEMPLATES = {
     *(getattr(perspectives, name) for name in ("step", "vertex", "segment")),
@@ -231,6 +246,7 @@ def test_every_kernel_is_tried(both):
     test_plain_and_compiled_agree_on_progressive_curves(both, np.float64, np.float64)
     test_plain_and_compiled_agree_on_progressive_curves(both, np.complex128, np.complex128)
     test_plain_and_compiled_agree_on_elimination(both)
+    test_plain_and_compiled_agree_on_shapes(both)
     test_plain_and_compiled_agree_on_methods_of_insertion(both, np.float64)
     reached = set(both) | TEMPLATES
     while below := {callee for caller in reached for _, callee in caller._callees()} - reached:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
-    from knotwork.removal import Reduction, reduce, relative, remove
+    from knotwork.removal import Distance, Matching, Reduction, distance_bound, reduce, relative, remove
     from knotwork.space import SplineSpace
     from knotwork.spline import Spline, curve, surface
 
@@ -24,6 +24,8 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Conversion",
+    "Distance",
+    "Matching",
     "PolynomialPieces",
     "Reduction",
     "Spline",
@@ -34,6 +36,7 @@ __all__ = [
     "clamp",
     "convert",
     "curve",
+    "distance_bound",
     "diagrams",
     "elevate",
     "from_bezier",
@@ -64,7 +67,7 @@ _PARTS = {
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),
     "progressive": ("blossom", "segment"),
-    "removal": ("Reduction", "reduce", "relative", "remove"),
+    "removal": ("Distance", "Matching", "Reduction", "distance_bound", "reduce", "relative", "remove"),
     "space": ("SplineSpace",),
     "spline": ("Spline", "curve", "surface"),
     "stability": (),

@@ -2,6 +2,7 @@
 
 from knotwork.removal.faces import reduce, remove
 from knotwork.removal.result import Reduction
+from knotwork.removal.shapes import Distance, Matching, distance_bound
 from knotwork.removal.tolerance import relative
 
-__all__ = ["Reduction", "reduce", "relative", "remove"]
+__all__ = ["Distance", "Matching", "Reduction", "distance_bound", "reduce", "relative", "remove"]

@@ -1,4 +1,4 @@
-"""Distances of shapes from their definitions: polynomials in Fractions, the discrete Fréchet distance by brute force."""
+"""Distances of shapes from their definitions: polynomials in Fractions, the discrete Fréchet distance."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def polynomial(net, x, y):
 
 
 def bernstein(p, n):
-    """Return the coefficients of a polynomial in the Bernstein basis of degree n, from its blossom at zeros and ones."""
+    """Return the coefficients of a polynomial in the Bernstein basis of degree n, by its blossom at zeros and ones."""
     p = (*p, *[Fraction(0)] * (n + 1 - len(p)))
     return [oracle.blossom(p, (Fraction(0),) * (n - i) + (Fraction(1),) * i) for i in range(n + 1)]
 

@@ -8,7 +8,6 @@ import independent
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.spatial.distance import directed_hausdorff
 
 import knotwork as kw
@@ -54,13 +53,15 @@ def test_any_two_curves_have_a_bound_that_can_be_checked(a, b):
     assert found.matching.check(a, b) == pytest.approx(found.bound)
     first, second = found.matching.parameters(a, b)
     assert (np.diff(first) >= -1e-12).all()
-    for curve, other, x in ((a, b, first), (b, a, second)):
+    for curve, x in ((a, first), (b, second)):
         lo, hi = map(float, curve.space.domain)
         assert lo <= x[0]
         assert x[-1] <= hi + (hi - lo)
     if not (a.rational or b.rational or a.space.periodic or b.space.periodic):
         square, _ = independent.largest_on_path(
-            exact_nets(a, False), exact_nets(b, False), *(x.tolist() for x in (found.matching.second, found.matching.first))
+            exact_nets(a, False),
+            exact_nets(b, False),
+            *(x.tolist() for x in (found.matching.second, found.matching.first)),
         )
         assert square <= Fraction(found.bound) ** 2
 
@@ -95,7 +96,7 @@ def test_a_spoiled_matching_is_refused():
         (m.first, m.second, True),
         (m.first[[0, -1]], m.second[[0, -1]], False),
     ]:
-        with pytest.raises(ValueError, match="runs from|closed|piece"):
+        with pytest.raises(ValueError, match=r"runs from|closed|piece"):
             Matching(first, second, closed).check(a, b)
     moved = m.first.copy()
     k = len(moved) // 2
@@ -128,8 +129,14 @@ def test_components_have_their_own_tolerance():
 
 def test_what_cannot_be_compared():
     a = kw.curve([[0, 0], [1, 1]], 1)
-    for b, tolerance in ((kw.curve([[0, 0, 0], [1, 1, 1]], 1), None), (a, -1), (a, np.nan), (a, [1, 2, 3]), ("a", None)):
-        with pytest.raises(ValueError, match="given|expected"):
+    for b, tolerance in (
+        (kw.curve([[0, 0, 0], [1, 1, 1]], 1), None),
+        (a, -1),
+        (a, np.nan),
+        (a, [1, 2, 3]),
+        ("a", None),
+    ):
+        with pytest.raises(ValueError, match=r"given|expected"):
             distance_bound(a, b, tolerance)
     net = kw.surface(np.zeros((4, 4, 2)))
     with pytest.raises(ValueError, match="curve"):

@@ -20,7 +20,9 @@ def a_case(seed, p, q, d=2, rational=False, scale=1.0):
     rng = np.random.default_rng(seed)
     f, g = (rng.standard_normal((n, k + 1, d)) * scale for n, k in ((3, q), (2, p)))
     if rational:
-        f, g = (np.concatenate([c * w, w], axis=2) for c in (f, g) for w in [10.0 ** rng.uniform(-6, 6, (*c.shape[:2], 1))])
+        f, g = (
+            np.concatenate([c * w, w], axis=2) for c in (f, g) for w in [10.0 ** rng.uniform(-6, 6, (*c.shape[:2], 1))]
+        )
     u = np.sort(np.concatenate([rng.random(6) * 2, [0, 1, 2]]))
     s = np.sort(np.concatenate([rng.random(5) * 3, [0, 1, 2, 3]]))
     found = certify(f, g, u, s, 0.0, rational=rational)
@@ -115,7 +117,7 @@ def test_a_path_that_is_none_proves_nothing():
 
 def test_each_component_has_its_tolerance():
     f = np.array([[[0.0, 0], [1, 1000]]])
-    g = f + [0.001, 5]
+    g = f + np.array([0.001, 5])
     x = np.array([0.0, 1])
     found = certify(f, g, x, x, np.array([0.01, 10.0]))
     assert not len(found.failing)

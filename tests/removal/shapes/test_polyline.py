@@ -118,7 +118,12 @@ def test_what_is_kept_stays_bit_for_bit(iceland):
 def test_a_straight_line_becomes_one_link_and_a_ring_has_no_seam():
     line = np.linspace([0, 0], [30, 10], 1000)
     assert reduce_polyline(line, 0.01).vertices.tolist() == [[0, 0], [30, 10]]
-    square = np.concatenate([np.linspace(p, q, 50)[:-1] for p, q in [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 1)), ((0, 1), (0, 0))]])
+    square = np.concatenate(
+        [
+            np.linspace(p, q, 50)[:-1]
+            for p, q in [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 1)), ((0, 1), (0, 0))]
+        ]
+    )
     square = np.roll(square, 23, axis=0)  # the seam is in the middle of an edge
     result = reduce_polyline(np.concatenate([square, square[:1]]), 0.01, closed=True)
     assert len(result.vertices) == 5

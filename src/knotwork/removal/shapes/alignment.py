@@ -26,7 +26,7 @@ BOTH, FIRST, SECOND = 0, 1, 2
 
 
 @kernel
-def points_at(c, x, piece, pair, room, out):  # type: ignore[no-untyped-def]
+def points_at(c, x, piece, pair, room, out):
     """Write the points of a curve at parameters x, each on the piece given."""
     for j in range(len(x)):
         place(c[turn(piece[j], len(c))], x[j] - piece[j], room.points, room.level, pair.D, pair.W)
@@ -35,7 +35,7 @@ def points_at(c, x, piece, pair, room, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def coupled(P, Q, lo, start, cost, back, metric, D):  # type: ignore[no-untyped-def]
+def coupled(P, Q, lo, start, cost, back, metric, D):
     """Dynamic programme over pairs (i, j), lo[i] <= j < lo[i] + start[i + 1] - start[i]; return the largest square.
 
     cost[:, 0] is the least possible largest square up to a pair, cost[:, 1] the sum of squares, which breaks ties.
@@ -64,7 +64,7 @@ def coupled(P, Q, lo, start, cost, back, metric, D):  # type: ignore[no-untyped-
 
 
 @kernel
-def traced(lo, start, back, first, last):  # type: ignore[no-untyped-def]
+def traced(lo, start, back, first, last):
     """Write the range of j that each i is paired with."""
     i = len(lo) - 1
     c = start[i + 1] - 1
@@ -84,8 +84,8 @@ def traced(lo, start, back, first, last):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def feet(pair, room, s, u, first, last, out):  # type: ignore[no-untyped-def]
-    """out[i] = the parameter of g nearest to f(s[i]) between the samples that it is paired with, and one to each side."""
+def feet(pair, room, s, u, first, last, out):
+    """out[i] = the parameter of g nearest to f(s[i]) between the samples paired with it, and one to each side."""
     for i in range(len(s)):
         least, best = math.inf, u[first[i]]
         for j in range(max(first[i] - 1, 0), min(last[i] + 1, len(u) - 1)):

@@ -10,7 +10,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, exact, real_numbers
 from knotwork.errors import ParameterError, PointError
 from knotwork.removal.shapes.alignment import aligned, coarse_square, points_at, samples
-from knotwork.removal.shapes.certificate import Scaled, exact_square, root_above, sizes
+from knotwork.removal.shapes.certificate import Scaled, exact_square, root_above
 from knotwork.removal.shapes.nets import checked, exact_nets, is_closed, nets
 from knotwork.spline import Spline
 from knotwork.value import Frozen
@@ -52,7 +52,9 @@ class Matching(Frozen):
             x.setflags(write=False)
             _set(self, name, x)
         if len(self.first) != len(self.second):
-            raise ParameterError(f"{len(self.first)} and {len(self.second)} places given; expected as many on both curves")
+            raise ParameterError(
+                f"{len(self.first)} and {len(self.second)} places given; expected as many on both curves"
+            )
         _set(self, "closed", bool(closed))
 
     def __repr__(self) -> str:
@@ -98,11 +100,13 @@ class Matching(Frozen):
         if exact:
             u, s = (_fractions(x) for x in (self.second, self.first))
             square, widest = exact_square(f, g, u, s, rational=rational)
-            valid = square >= 0
-            bound = np.array([root_above(w * w) for w in widest.tolist()]) if each else root_above(max(square, 0))
+            valid = bool(square >= 0)
+            bound = np.array([root_above(w * w) for w in widest.tolist()]) if each else root_above(abs(square))
         else:
-            bound = _scaled(a, b, np.zeros(f.shape[2] - rational) if each else None, rational).bound(self.second, self.first)
-            valid = np.all(np.isfinite(bound))
+            bound = _scaled(a, b, np.zeros(f.shape[2] - rational) if each else None, rational).bound(
+                self.second, self.first
+            )
+            valid = bool(np.all(np.isfinite(bound)))
         if not valid:
             raise ParameterError("a step of the matching leaves a piece of a curve: expected every joint on the path")
         return bound

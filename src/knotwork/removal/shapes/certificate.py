@@ -69,12 +69,12 @@ class Scaled:
     def allowance(self) -> float:
         """What rounding can add to a distance by the metric.
 
-        With ε = 2⁻⁵³, each level of a blossom at arguments in [0, 1] errs by at most 3 ε M, M the largest coordinate, and each
-        step of degree raising too; there are at most as many as the higher degree. The difference errs by ε (M + M')
-        more: together at most (3 max(p, q) + 2) ε (M + M') in a component. With weights, every number is a sum of
-        positive multiples of w P, whose errors are relative to w: each of the p + q levels errs by 3 ε in the numerators
-        and in the denominators, a sum of at most min(p, q) + 1 products by that many ε and 6 more: less than
-        (8 (p + q) + 16) ε (M + M'). Terms of second order are in the last factor of the slack.
+        With ε = 2⁻⁵³, each level of a blossom at arguments in [0, 1] errs by at most 3 ε M, M the largest coordinate,
+        and each step of degree raising too; there are at most as many as the higher degree. The difference errs by
+        ε (M + M') more: together at most (3 max(p, q) + 2) ε (M + M') in a component. With weights, every number is a
+        sum of positive multiples of w P, whose errors are relative to w: each of the p + q levels errs by 3 ε in the
+        numerators and in the denominators, a sum of at most min(p, q) + 1 products by that many ε and 6 more: less
+        than (8 (p + q) + 16) ε (M + M'). Terms of second order are in the last factor of the slack.
         """
         return math.sqrt(float(np.sum(self.metric * self.slack * self.slack))) * (1 + 2.0**-40)
 
@@ -127,7 +127,7 @@ def certify(f: Array, g: Array, u: Array, s: Array, tolerance: Any, *, rational:
 
 
 def exact_square(f: Array, g: Array, u: Array, s: Array, *, rational: bool = False) -> tuple[Fraction, Array]:
-    """Return the square of the bound of a path over Fractions, and the bound of each component; (-1, …) if it is none."""
+    """Return the square of the bound of a path over Fractions, and each component's bound; (-1, …) if it is no path."""
     d, width = f.shape[2] - rational, f.shape[2]
     p, q = g.shape[1] - 1, f.shape[1] - 1
     ones = np.array([Fraction(1)] * d, object)
@@ -165,7 +165,7 @@ def room_for(q: int, p: int, width: int) -> Room:
     )  # fmt: skip
 
 
-def sizes(c: Array, rational: bool) -> Array:
+def sizes(c: Array, rational: bool) -> Any:
     """Return the largest coordinate of the control points in each component."""
     flat = c.reshape(-1, c.shape[2])
     with np.errstate(over="ignore"):
@@ -173,7 +173,7 @@ def sizes(c: Array, rational: bool) -> Array:
     return np.abs(points).max(axis=0, initial=0.0)
 
 
-def _scaled(c: Array, exponents: Array) -> Array:
+def _scaled(c: Array, exponents: Array) -> Any:
     """Return nets whose component d is divided by 2 to the power of its exponent; weights go up to about one."""
     if len(exponents) == c.shape[2]:
         return np.ldexp(c, -exponents)

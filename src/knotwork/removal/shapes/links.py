@@ -41,7 +41,7 @@ class Course(NamedTuple):
 
 
 class Queue(NamedTuple):
-    """Working space: for the candidates of some stations where their last link starts, and the order they were reached in."""
+    """Working space for the candidates of some stations: where their last link starts, in what order reached."""
 
     parent: Array
     order: Array
@@ -51,7 +51,7 @@ class Queue(NamedTuple):
 
 
 @kernel
-def foot(P, Q, y, D):  # type: ignore[no-untyped-def]
+def foot(P, Q, y, D):
     """Return (y - P)·(Q - P), |Q - P|² and |y - P|²."""
     along, chord, square = 0.0, 0.0, 0.0
     for d in range(len(D)):
@@ -63,7 +63,7 @@ def foot(P, Q, y, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def near(P, Q, y, limit, D):  # type: ignore[no-untyped-def]
+def near(P, Q, y, limit, D):
     """Tell whether a link comes within the square root of `limit` of a point."""
     along, chord, square = foot(P, Q, y, D)
     a = min(max(along, 0.0), chord)
@@ -71,7 +71,7 @@ def near(P, Q, y, limit, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def passes(P, Q, Y, lo, hi, limit, D):  # type: ignore[no-untyped-def]
+def passes(P, Q, Y, lo, hi, limit, D):
     """Return -1 if a link passes the points lo … hi - 1 in order, else a point where it fails."""
     ahead, k = 0.0, lo
     while k < hi:  # as long as the feet advance, no roots are needed
@@ -100,7 +100,7 @@ def passes(P, Q, Y, lo, hi, limit, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def matched(P, Q, Y, lo, hi, limit, start, u, D):  # type: ignore[no-untyped-def]
+def matched(P, Q, Y, lo, hi, limit, start, u, D):
     """u[k] = start + w_k for the points lo … hi - 1 that a link passes: feet made monotone within their intervals."""
     reach = 0.0
     for k in range(lo, hi):
@@ -117,7 +117,7 @@ def matched(P, Q, Y, lo, hi, limit, start, u, D):  # type: ignore[no-untyped-def
 
 
 @kernel
-def chords(Y, limit, ends, D):  # type: ignore[no-untyped-def]
+def chords(Y, limit, ends, D):
     """Write the ends of nearly longest chords of the points that pass those between; return how many ends.
 
     Each end is found by doubling, then halving to a part of the length: linear time.
@@ -146,7 +146,7 @@ def chords(Y, limit, ends, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def candidate(course, number, P):  # type: ignore[no-untyped-def]
+def candidate(course, number, P):
     """Write a candidate to P; return its station."""
     m = len(course.offsets)
     i, r = number // m, number % m
@@ -156,7 +156,7 @@ def candidate(course, number, P):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def fewest(course, queue, first, last, only):  # type: ignore[no-untyped-def]
+def fewest(course, queue, first, last, only):
     """Reach station `last` from `first` with fewest links, from all its candidates or `only` one; return a candidate.
 
     It is one of the last station, or if that is not reached the first of the farthest one.
@@ -207,7 +207,7 @@ def fewest(course, queue, first, last, only):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def route(course, queue, stops, only, found):  # type: ignore[no-untyped-def]
+def route(course, queue, stops, only, found):
     """Write the vertices of a course of few links through all the stops; return how many.
 
     `stops` are stations, each at most a queue away from the next; the start is the candidate `only`, or any if -1.

@@ -20,7 +20,7 @@ DIRECTIONS = 90
 
 
 @kernel
-def turning_parts(Y, directions, swing, most, state, D):  # type: ignore[no-untyped-def]
+def turning_parts(Y, directions, swing, most, state, D):
     """Return how many parts samples fall into that each make more than `most` turns with swings above `swing`.
 
     state[a] holds for a direction a: lowest and highest value since the last turn, whether it goes up (1), down (-1)
@@ -75,8 +75,8 @@ def fewest_pieces(samples: Array, tolerance: float, degree: int, *, closed: bool
 
     Notes
     -----
-    Rigorous. A curve of p-th degree with p - 1 continuous derivatives has at least p + pieces control points, an open polyline
-    one vertex more than pieces.
+    Rigorous. A curve of degree p with p - 1 continuous derivatives has at least p + pieces control points, an open
+    polyline one vertex more than pieces.
     """
     Y, eps = np.ascontiguousarray(samples, float), 1.0
     if len(Y) == 0:

@@ -49,7 +49,7 @@ class Room(NamedTuple):
 
 
 @kernel
-def on_interval(c, x, y, out, level, W):  # type: ignore[no-untyped-def]
+def on_interval(c, x, y, out, level, W):
     """Restrict a net c of degree n to [x, y]: out[i] is the blossom at n − i times x and i times y."""
     n = len(c) - 1
     for j in range(n + 1):
@@ -70,7 +70,7 @@ def on_interval(c, x, y, out, level, W):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def raised(c, n, W):  # type: ignore[no-untyped-def]
+def raised(c, n, W):
     """Raise n + 1 coefficients to degree n + 1 in place: c_i = (i c_{i-1} + (n + 1 - i) c_i) / (n + 1)."""
     for e in range(len(W)):
         c[n + 1, e] = c[n, e]
@@ -80,7 +80,7 @@ def raised(c, n, W):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def quotients(E, G, F, product, D):  # type: ignore[no-untyped-def]
+def quotients(E, G, F, product, D):
     """Write the weighted means n_k / d_k whose convex combinations are g - f; return how many.
 
     With g = G/v and f = F/w over the product basis, g - f = Σ n_k B_k / Σ d_k B_k, d_k > 0, where
@@ -102,19 +102,19 @@ def quotients(E, G, F, product, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def piece_of(x):  # type: ignore[no-untyped-def]
+def piece_of(x):
     """Return the piece that the parameter x ends in."""
     return max(math.ceil(x) - 1, 0)
 
 
 @kernel
-def turn(k, count):  # type: ignore[no-untyped-def]
+def turn(k, count):
     """Return the index of piece k: the second turn of a closed curve is the first again."""
     return k if k < count else k - count
 
 
 @kernel
-def difference(pair, room, a, b, x, y):  # type: ignore[no-untyped-def]
+def difference(pair, room, a, b, x, y):
     """Write the coefficients of g - f on the step from (a, x) to (b, y) to room.E; return how many."""
     k, i = piece_of(b), piece_of(y)
     g, f = pair.g[turn(k, len(pair.g))], pair.f[turn(i, len(pair.f))]
@@ -135,7 +135,7 @@ def difference(pair, room, a, b, x, y):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def largest_square(E, m, metric, D):  # type: ignore[no-untyped-def]
+def largest_square(E, m, metric, D):
     """Return the largest square of m rows by the metric."""
     largest = E[0, 0] - E[0, 0]
     for j in range(m):
@@ -147,7 +147,7 @@ def largest_square(E, m, metric, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def path_square(pair, room, u, s, widest):  # type: ignore[no-untyped-def]
+def path_square(pair, room, u, s, widest):
     """Return the largest square on the steps of a path and write the largest coefficient of each component.
 
     -1 if the path runs backwards or a step is not inside one piece of each curve.

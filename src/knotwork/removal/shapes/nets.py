@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, in_arithmetic_of, real_array
+from knotwork.arithmetic.arrays import Array, real_array
 from knotwork.errors import ParameterError, PointError
-from knotwork.insertion import to_bezier
+from knotwork.insertion.pieces import to_bezier
 from knotwork.removal.shapes.certificate import ROUNDING, WEIGHTS, sizes
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline

@@ -35,7 +35,7 @@ class Polyline(NamedTuple):
 
 
 @kernel
-def match_route(course, ends, V, u):  # type: ignore[no-untyped-def]
+def match_route(course, ends, V, u):
     """u[k] = the parameter on vertices V of point k of Y; vertex n stands for point ends[n]."""
     for n in range(len(ends) - 1):
         u[ends[n]] = n
@@ -68,7 +68,7 @@ def reduce_polyline(
     ends : {"fixed", "free"}
         Whether the ends of an open curve stay.
     small : {"keep", "drop"}
-        Whether a closed curve within the tolerance of a point stays a curve that can be drawn, of three vertices or more.
+        Whether a closed curve within the tolerance of a point stays one that can be drawn, of three vertices or more.
     effort : {"fast", "normal", "best"}
         How many candidates for vertices are tried.
 
@@ -122,7 +122,7 @@ def itself(Y: Array, tolerance: Any) -> Polyline:
 
 
 class Work:
-    """The points, scaled so that the tolerance is about one, with more of them on long edges, and where vertices may be."""
+    """The points scaled so that the tolerance is about one, more of them on long edges, and where vertices may be."""
 
     def __init__(self, Y: Array, tolerance: Any, effort: str) -> None:
         self.D = extent(Y.shape[1])
@@ -251,7 +251,9 @@ def _edges(Y: Array) -> Array:
 def _offsets(d: int, effort: str) -> Array:
     """Return where candidates are in the unit ball, the centre first."""
     if d == 2:
-        rings = [r * np.stack([np.cos(a), np.sin(a)], 1) for n, r in RINGS[effort] for a in [2 * np.pi * np.arange(n) / n]]
+        rings = [
+            r * np.stack([np.cos(a), np.sin(a)], 1) for n, r in RINGS[effort] for a in [2 * np.pi * np.arange(n) / n]
+        ]
     else:
         unit = np.concatenate([np.eye(d), -np.eye(d)])
         if d > 2:  # and between the axes
@@ -280,7 +282,7 @@ def _three(Y: Array, kept: Array) -> Array | None:
     unit, v = np.ldexp(chord, -e), np.ldexp(Y - first, -e)
     rest = v - np.outer(v @ unit / (unit @ unit), unit)
     distance = np.abs(rest).max(axis=1)
-    distance[(Y == first).all(axis=1) | (Y == Y[i]).all(axis=1)] = -1
+    distance[(first == Y).all(axis=1) | (Y[i] == Y).all(axis=1)] = -1
     k = int(np.argmax(distance))
     if distance[k] < 0:
         return None

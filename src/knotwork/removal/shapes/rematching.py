@@ -19,7 +19,7 @@ STEPS = 4
 
 
 @kernel
-def place(c, t, out, level, D, W):  # type: ignore[no-untyped-def]
+def place(c, t, out, level, D, W):
     """Write the point of a net at t to out[0] and the derivative to out[1]."""
     n, last = len(c) - 1, len(D)
     for j in range(n + 1):
@@ -40,7 +40,7 @@ def place(c, t, out, level, D, W):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def apart(P, Q, metric, D):  # type: ignore[no-untyped-def]
+def apart(P, Q, metric, D):
     """Return the square of the distance of two points by the metric."""
     total = metric[0] * (P[0] - Q[0]) * (P[0] - Q[0])
     for d in range(1, len(D)):
@@ -49,7 +49,7 @@ def apart(P, Q, metric, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def nearest(c, lo, hi, pair, room):  # type: ignore[no-untyped-def]
+def nearest(c, lo, hi, pair, room):
     """Return a parameter of a net in [lo, hi] whose point is near room.points[2], and the square of their distance.
 
     The best of some samples, then Gauss-Newton steps from there.
@@ -73,7 +73,7 @@ def nearest(c, lo, hi, pair, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def partner(pair, room, of_g, at, lo, hi):  # type: ignore[no-untyped-def]
+def partner(pair, room, of_g, at, lo, hi):
     """Return a parameter in [lo, hi], in one piece of f, near the point of g at `at`; or of g near f, if not of_g.
 
     And the square of the distance.
@@ -88,7 +88,7 @@ def partner(pair, room, of_g, at, lo, hi):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def shape_of(C, n, row, pair, room):  # type: ignore[no-untyped-def]
+def shape_of(C, n, row, pair, room):
     """Write the ends of a net of degree n to room.points[row] and [row + 1]; return its bend and its chord, squared.
 
     The bend is how far the middle control points are from the middle of the chord: a guess, to choose by.
@@ -104,7 +104,7 @@ def shape_of(C, n, row, pair, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def spread(pair, room, target, a, b, x, y):  # type: ignore[no-untyped-def]
+def spread(pair, room, target, a, b, x, y):
     """Write nodes (u, s) inside a step by the interval rule to room.places; tell whether each has a partner.
 
     The straighter curve counts as its chord: the points of it within the target of a point of the other are an
@@ -144,7 +144,7 @@ def spread(pair, room, target, a, b, x, y):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def halved(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-def]
+def halved(pair, room, target, b, y, U, S, count):
     """Extend a path of `count` nodes to (b, y), halving steps above the target; return the new count.
 
     Negative if a step stays above it: then the rest is one step. 0 if U and S are too short.
@@ -180,7 +180,7 @@ def halved(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-de
 
 
 @kernel
-def extended(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-def]
+def extended(pair, room, target, b, y, U, S, count):
     """Extend a path of `count` nodes by a step to (b, y) inside one piece of each curve; return the new count.
 
     Negative if it stays above the target; 0 if U and S are too short.
@@ -208,7 +208,7 @@ def extended(pair, room, target, b, y, U, S, count):  # type: ignore[no-untyped-
 
 
 @kernel
-def refined(pair, room, target, u, s, U, S, failing):  # type: ignore[no-untyped-def]
+def refined(pair, room, target, u, s, U, S, failing):
     """Write a finer path to U, S, its steps inside pieces and, where it can be, below the target; return its length.
 
     failing[j] is the parameter s up to which step j of the given path is proven; -1 if all of it is. 0 is returned if
