@@ -5,7 +5,7 @@ BIN := .venv/bin
 # Processes that share the tests: all cores unless told otherwise, as in `make test CORES=1`.
 CORES ?= auto
 
-.PHONY: help demo test thorough lint bench methods crossovers accuracy clean
+.PHONY: help demo test thorough bounds lint bench methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
@@ -18,6 +18,10 @@ test: .venv/tested  ## run the tests on all cores
 
 thorough: .venv/tested  ## the same with a thousand new random examples for each property: takes long
 	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest --numprocesses $(CORES)
+
+bounds: .venv/tested  ## the tests, all compiled and with every index checked, and random periods with knots close together
+	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python -m pytest --numprocesses $(CORES)
+	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python tests/test_periodic.py 300000
 
 lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src
 	$(BIN)/ruff check

@@ -426,3 +426,16 @@ def test_only_kernels_go_without_types():
                 if "kernel" not in marks and node.name not in ("__init__", "__init_subclass__"):
                     untyped.append(f"{path.name}:{node.lineno} {node.name}")
     assert untyped == []
+
+
+def test_compiled_code_that_checks_indices_is_kept_apart():
+    """NUMBA_BOUNDSCHECK changes what is compiled, so it changes the name under which it is kept; then errors show."""
+
+    def said(program: str, checked: str) -> str:
+        environment = {**os.environ, "NUMBA_BOUNDSCHECK": checked}
+        command = [sys.executable, "-c", f"import numpy as np\nfrom knotwork.knots import last_at_most\n{program}"]
+        run = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+        return run.stdout + run.stderr
+
+    assert said("print(last_at_most.digest)", "0") != said("print(last_at_most.digest)", "1")
+    assert "IndexError" in said("last_at_most.compiled(np.zeros(3), 0, 50, 1.0)", "1")

@@ -159,7 +159,7 @@ def main(count: int, seed: int = 0) -> None:
         except BaseException:
             print(f"case {i} of seed {seed}: {space!r}")
             raise
-        if (i + 1) % 1000 == 0:
+        if (i + 1) % 100 == 0:
             print(f"{i + 1} cases are right", flush=True)
 
 
