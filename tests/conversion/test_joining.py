@@ -214,3 +214,56 @@ def test_no_result_exceeds_its_tolerance(curve, gap, seed, tolerance):
     breaks = np.concatenate([pieces.breaks[:1], pieces.breaks[0] + np.cumsum(lengths)])
     found = kw.from_pieces(pieces.coefficients, breaks, rational=curve.rational, tolerance=tolerance)
     assert found.bound <= max(tolerance or 0, 2e-12 * (1 + abs(curve.points).max()))
+
+
+@pytest.mark.parametrize("factor", [2, 3, F(1, 7), 1e-5])
+@pytest.mark.parametrize("in_fractions", [False, True])
+def test_rational_pieces_whose_weights_differ_by_a_factor(factor, in_fractions):
+    """A half circle: a factor on a whole piece makes no difference to its points."""
+    s = 0.5**0.5
+    nets = np.array([[[1, 0, 1], [s, s, s], [0, 1, 1]], [[0, 1, 1], [-s, s, s], [-1, 0, 1]]])
+    if in_fractions:
+        nets = oracle.fractions(nets)
+        factor = F(factor)
+    nets[1] = nets[1] * (factor if in_fractions else float(factor))
+    found = kw.from_pieces(nets, [0, 1, 2], rational=True, tolerance=1e-12)
+    assert copies_inside(found.spline.space)[1] <= 2
+    assert found.bound <= 1e-12
+    u = np.linspace(0, 2, 33)
+    np.testing.assert_allclose((found.spline(u) ** 2).sum(axis=1).astype(float), 1, atol=1e-14)
+    np.testing.assert_allclose(found.spline(1).astype(float), [0, 1], atol=1e-15)
+
+
+def test_rational_patches_whose_weights_differ_by_factors():
+    rng = np.random.default_rng(0)
+    space = kw.SplineSpace(2, [0, 0, 0, 1, 2, 2, 2])
+    f = kw.surface(rng.standard_normal((4, 4, 3)), 2, (space.knots, space.knots), rng.uniform(0.5, 2, (4, 4)))
+    pieces = kw.convert(f, "bezier").spline
+    factors = 2.0 ** rng.integers(-3, 4, (2, 2, 1, 1, 1))
+    found = kw.from_pieces(pieces.coefficients * factors, pieces.breaks, rational=True)
+    assert found.spline.spaces == f.spaces
+    u = np.linspace(0, 2, 9)
+    np.testing.assert_allclose(found.spline(u, u, grid=True), f(u, u, grid=True), atol=1e-12)
+
+
+def test_rational_pieces_that_jump_keep_their_weights():
+    nets = np.array([[[0, 0, 1], [1, 0, 1.0]], [[2, 2, 2], [4, 2, 2.0]]])
+    found = kw.from_pieces(nets, [0, 1, 2], rational=True).spline
+    assert found.weights.tolist() == [1, 1, 2, 2]
+
+
+def test_nets_of_rational_splines_know_it():
+    circle = kw.curve([[1, 0], [1, 1], [0, 1]], 2, weights=[1, 0.5**0.5, 1])
+    nets, breaks = kw.to_bezier(circle)
+    for make in (kw.from_bezier, lambda *given: kw.from_pieces(*given).spline):
+        again = make(nets, breaks)
+        assert again.rational
+        assert (again.coefficients == circle.coefficients).all()
+        assert type(again.coefficients) is np.ndarray
+        with pytest.raises(PointError, match="say rational=True"):
+            make(nets * 2, breaks)
+        with pytest.raises(PointError, match="say rational=True"):
+            make(nets[:, ::-1], breaks)
+    assert kw.from_bezier(nets * 2, breaks, rational=True).rational
+    assert not kw.from_bezier(nets[..., :-1] / nets[..., -1:], breaks, rational=False).rational
+    assert type(kw.to_bezier(kw.curve([0, 1, 2.0], 2))[0]) is np.ndarray

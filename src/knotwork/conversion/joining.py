@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, exact, numbers, require_finite, whole
+from knotwork.arithmetic.arrays import Array, all_finite, exact, numbers, require_finite, whole
 from knotwork.conversion.certificate import Tolerance, coefficientwise
 from knotwork.conversion.face import Conversion, convert, measured
 from knotwork.conversion.nesting import common_refinement, space_over
 from knotwork.conversion.polynomials import PolynomialPieces, nets_of
 from knotwork.errors import ParameterError, PointError
-from knotwork.insertion.pieces import from_bezier
+from knotwork.insertion.pieces import from_bezier, is_rational
 from knotwork.knots import sorted_knots
 from knotwork.linear.banded import as_blocks
 from knotwork.space import SplineSpace
@@ -27,7 +27,7 @@ def from_pieces(
     breaks: Any = None,
     *,
     basis: str = "bezier",
-    rational: bool = False,
+    rational: bool | None = None,
     periodic: bool = False,
     smoothness: Any = None,
     tolerance: Any = None,
@@ -43,8 +43,9 @@ def from_pieces(
         Increasing, one array per parameter; not with `PolynomialPieces`.
     basis : {"bezier", "monomial"}
         What the coefficients are: control points, or factors of (t − a)ᵏ, a the start of the interval.
-    rational : bool
-        Whether the last coordinate is a weight, and the others are multiplied by it.
+    rational : bool, optional
+        Whether the last coordinate is a weight, and the others are multiplied by it; as in `from_bezier`. Where such
+        pieces meet in a point, all weights of the next are multiplied by what makes the weights there equal.
     periodic : bool
         Whether the end of a curve is joined to its start.
     smoothness : int or array_like of int, or a tuple of them, one per parameter; optional
@@ -82,9 +83,23 @@ def from_pieces(
     ([0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0], [0.0, 0.5, 1.5, 1.0])
     """
     given = _given(pieces, breaks, basis, rational)
-    spline = from_bezier(nets_of(given), given.breaks, given.rational)
+    nets = nets_of(given)
+    scaled = nets
+    if given.rational:
+        for axis in range(nets.ndim // 2):
+            scaled = _with_equal_weights(scaled, axis)
+    spline = from_bezier(scaled, given.breaks, given.rational)
     if periodic:
         spline = _closed(spline)
+    found = _joined(spline, smoothness, tolerance)
+    if scaled is nets or nets.dtype == object:
+        return found
+    moved = 4 * float(np.finfo(nets.dtype).eps) * np.abs(spline.points).max(initial=0)
+    return found._replace(bound=found.bound + moved)
+
+
+def _joined(spline: Spline, smoothness: Any, tolerance: Any) -> Conversion:
+    """Return the spline with the fewest knots near one that may have more."""
     allowed = Tolerance(spline, 0 if tolerance is None else tolerance)
     if smoothness is not None:
         orders = _orders(spline, smoothness)
@@ -101,8 +116,10 @@ def from_pieces(
             if allowed.admits(change):
                 allowed.require(change, "joining")
                 return found
-    while not allowed.admits(change):
-        orders = [_less(spline, found.spline, axis, o, allowed) for axis, o in enumerate(orders)]
+    while not allowed.admits(change) and max(o.max(initial=-1) for o in orders) >= 0:
+        less = [_less(spline, found.spline, axis, o, allowed) for axis, o in enumerate(orders)]
+        same = all((p == o).all() for p, o in zip(less, orders, strict=True))
+        orders = [np.full_like(o, -1) for o in orders] if same else less
         found = convert(spline, [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)])
         change = measured(spline, found.spline)
     allowed.require(change, "joining")
@@ -127,7 +144,7 @@ def _less(spline: Spline, result: Spline, axis: int, orders: Array, allowed: Tol
     return np.where(near, np.maximum(space.degree - np.maximum(2 * copies, 1), -1), orders)
 
 
-def _given(pieces: Any, breaks: Any, basis: str, rational: bool) -> PolynomialPieces:
+def _given(pieces: Any, breaks: Any, basis: str, rational: bool | None) -> PolynomialPieces:
     """Return what was given as pieces with checked breaks."""
     if isinstance(pieces, PolynomialPieces):
         if breaks is not None:
@@ -135,13 +152,38 @@ def _given(pieces: Any, breaks: Any, basis: str, rational: bool) -> PolynomialPi
         return pieces
     if breaks is None:
         raise ParameterError("no breaks given; expected one more than there are pieces")
-    P = numbers(pieces, "pieces", PointError)
+    rational = is_rational(pieces, rational)
+    P = numbers(pieces, "pieces", PointError).view(np.ndarray)
     require_finite(P, "pieces", PointError)
     vectors = tuple(sorted_knots(x, "breaks") for x in (breaks if isinstance(breaks, tuple) else (breaks,)))
     if any(v.dtype == object for v in (P, *vectors)):
         P, *rest = (v if v.dtype == object else exact(v, "pieces", PointError) for v in (P, *vectors))
         vectors = tuple(rest)
     return PolynomialPieces(P, vectors if len(vectors) > 1 else vectors[0], basis, rational)
+
+
+def _with_equal_weights(nets: Array, axis: int) -> Array:
+    """Return rational nets, each times a factor, whose weights agree where they meet in a point along an axis.
+
+    Factors make no difference to the points, but for two roundings. The first corner of each side stands for it.
+    """
+    k = nets.ndim // 2
+    each = np.moveaxis(nets, (axis, k + axis), (0, k))
+    corner = each.reshape(*each.shape[: k + 1], -1, each.shape[-1])[..., 0, :]
+    end, start = np.moveaxis(corner[:-1], k, 0)[-1], np.moveaxis(corner[1:], k, 0)[0]
+    (p, w), (q, v) = ((x[..., :-1], x[..., -1]) for x in (end, start))
+    if nets.size == 0 or not (v > 0).all() or not (w > 0).all():
+        return nets  # refused later
+    unit = 0 if nets.dtype == object else 8 * each.shape[k] * np.finfo(nets.dtype).eps
+    gap, size = np.abs(p / w[..., None] - q / v[..., None]), np.abs(p / w[..., None]).max(initial=0)
+    differ = (gap <= unit * size).all(axis=-1) & (np.abs(w - v) > unit * w)
+    ratio = np.where(differ, w / v, 1)
+    with np.errstate(over="ignore", under="ignore"):
+        factors = np.multiply.accumulate(ratio, axis=0)
+        scaled = np.concatenate([each[:1], each[1:] * factors.reshape(*factors.shape, *[1] * (each.ndim - k))])
+    if not differ.any() or not all_finite(scaled) or (scaled[..., -1] <= 0).any():
+        return nets
+    return np.ascontiguousarray(np.moveaxis(scaled, (0, k), (axis, k + axis)), nets.dtype)
 
 
 def _closed(spline: Spline) -> Spline:

@@ -32,6 +32,7 @@ class PolynomialPieces(NamedTuple):
 def to_pieces(spline: Spline, basis: str) -> PolynomialPieces:
     """Return the polynomial pieces of a spline in a basis."""
     nets, breaks = to_bezier(spline)
+    nets = nets.view(np.ndarray)
     if basis == "monomial":
         nets = _along_degrees(nets, _vectors(breaks), backwards=False)
     return PolynomialPieces(nets, breaks, basis, spline.rational)

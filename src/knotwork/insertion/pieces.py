@@ -68,6 +68,23 @@ def trim(spline: Spline, a: Any, b: Any, axis: int = 0) -> Spline:
     return _restrict(spline, axis, x, y)
 
 
+class HomogeneousNets(np.ndarray[Any, np.dtype[Any]]):
+    """Bézier nets that know that their last coordinate is a weight; arrays computed from them do not know any more."""
+
+    #: true for the nets themselves, None for what was made of them
+    rational: bool | None = True
+
+    def __array_finalize__(self, of: Any) -> None:
+        self.rational = None if isinstance(of, HomogeneousNets) else True
+
+
+def is_rational(nets: Any, rational: bool | None) -> bool:
+    """Tell whether nets are homogeneous, by what was said or by themselves; raise if only they were once."""
+    if rational is None and isinstance(nets, HomogeneousNets) and nets.rational is None:
+        raise PointError("these nets come from a rational spline: say rational=True, or False if they are points now")
+    return getattr(nets, "rational", False) is True if rational is None else bool(rational)
+
+
 def to_bezier(spline: Spline) -> tuple[Array, Any]:
     """Return the Bézier nets of all polynomial pieces, and the breaks between them.
 
@@ -75,7 +92,8 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     -------
     nets : ndarray
         Shape (m, n + 1, d) for a curve of m pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, and so on; no d for a
-        scalar spline. Homogeneous coordinates (points times weights, weights) if the spline is rational.
+        scalar spline. Homogeneous coordinates (points times weights, weights) if the spline is rational; such nets tell
+        `from_bezier` so.
     breaks : ndarray, shape (m + 1,), or a tuple of them, one per parameter
 
     Examples
@@ -94,7 +112,8 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     counts = [n for x, space in zip(breaks, spline.spaces, strict=True) for n in (len(x) - 1, space.order)]
     split_axes = nets.reshape(*counts, *nets.shape[k:])
     order = [*range(0, 2 * k, 2), *range(1, 2 * k, 2), *range(2 * k, split_axes.ndim)]
-    return np.ascontiguousarray(split_axes.transpose(order)), breaks[0] if k == 1 else tuple(breaks)
+    found = np.ascontiguousarray(split_axes.transpose(order))
+    return found.view(HomogeneousNets) if spline.rational else found, breaks[0] if k == 1 else tuple(breaks)
 
 
 def in_bezier_form(spline: Spline) -> Spline:
@@ -115,7 +134,7 @@ def in_bezier_form(spline: Spline) -> Spline:
     return spline
 
 
-def from_bezier(nets: Any, breaks: Any, rational: bool = False) -> Spline:
+def from_bezier(nets: Any, breaks: Any, rational: bool | None = None) -> Spline:
     """Return the spline of Bézier nets over breaks: the inverse of `to_bezier`.
 
     Parameters
@@ -124,15 +143,17 @@ def from_bezier(nets: Any, breaks: Any, rational: bool = False) -> Spline:
         As `to_bezier` returns them.
     breaks : array_like or tuple of array_like
         Increasing; one array per parameter.
-    rational : bool
-        Whether the nets are homogeneous, the last coordinate the weight.
+    rational : bool, optional
+        Whether the nets are homogeneous, the last coordinate the weight. By default they are if `to_bezier` made them
+        of a rational spline; arrays computed from such nets are refused until you say what they are.
 
     Notes
     -----
     Where all neighbouring nets share their end points exactly, a break gets multiplicity degree, otherwise degree + 1.
     Smoother joins are not looked for.
     """
-    P = numbers(nets, "nets", PointError)
+    rational = is_rational(nets, rational)
+    P = numbers(nets, "nets", PointError).view(np.ndarray)
     given = breaks if isinstance(breaks, tuple) else (breaks,)
     vectors = [sorted_knots(x, "breaks") for x in given]
     k = len(vectors)

@@ -61,7 +61,7 @@ def _pieces(spline: Spline, place: str) -> Array:
     if spline.space.degree == 0:
         raise FileError(f"{place} has degree 0; .svg holds curves of degree 1 and up")
     nets, breaks = to_bezier(spline)
-    nets = in_floats(nets, place, FileError).astype(np.float64)
+    nets = in_floats(np.asarray(nets), place, FileError).astype(np.float64)
     if not spline.rational:
         nets = np.concatenate([nets, np.ones((*nets.shape[:-1], 1))], axis=-1)
     # where the curve has no jump, pieces meet; what rounding says otherwise is not drawn as a gap
