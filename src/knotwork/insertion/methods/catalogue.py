@@ -244,11 +244,11 @@ METHODS: dict[str, Method] = {
         ),
         _matrix(
             "goldman-column", "goldman", "§4.17", "two triangles for all columns of n + 1 knots",
-            lambda s: s.by_intervals(matrix.goldman_columns), predictions.goldman_columns,
+            lambda s: s.by_intervals_with_weights(matrix.goldman_columns), predictions.goldman_columns,
         ),
         _matrix(
             "goldman-row", "goldman", "§4.17", "a triangle top down for each new vertex of n + 1 knots",
-            lambda s: s.by_intervals(matrix.goldman_rows), predictions.goldman_rows,
+            lambda s: s.by_intervals_with_weights(matrix.goldman_rows), predictions.goldman_rows,
         ),
         _matrix(
             "morken", "morken", "§4.11", "each entry from three neighbours (Eq. 4.8)",

@@ -32,7 +32,7 @@ class Room(NamedTuple):
     stack: Array
     #: knots of an interval in an order that a method chooses
     knots: Array
-    #: weights of a triangle, coefficients of its points, and the unit matrix; each (n + 1, n + 1)
+    #: weights of a triangle, coefficients of its points, and the unit matrix, each (n + 1, n + 1); or nothing
     weights: Array
     #: as long as a point
     D: Any

@@ -120,8 +120,8 @@ class Problem:
     def _output(self) -> Array:
         return empty((len(self.P) + len(self.W), self.P.shape[1]), self.P.dtype)
 
-    def _room(self, rows: int) -> Room:
-        """Return what a kernel works in; with so many rows of points."""
+    def _room(self, rows: int, weights: Array | None = None) -> Room:
+        """Return what a kernel works in: so many rows of points, and weights if it keeps any."""
         n, d = self.n, self.P.shape[1]
         points, dtype = self.P.dtype, self.U.dtype
         return Room(
@@ -130,8 +130,8 @@ class Problem:
             np.empty((rows, n + 1, d), points),
             np.empty((n + 1, d), points),
             np.empty((rows, 2), np.intp),
-            np.empty(2 * n + int(self.gap.max(initial=0)), dtype),
-            np.stack([np.eye(n + 1, dtype=int)] * 3) * self.one,
+            np.empty(2 * n + len(self.W), dtype),
+            np.empty((0, 0, 0), dtype) if weights is None else weights,
             extent(d),
         )
 
@@ -149,6 +149,13 @@ class Problem:
         """Run a knot-oriented method."""
         Z = self._output()
         method(Z, self.T, self.P, self.U, self.W, self.ends[1], self._room(self._halvings))
+        return Z
+
+    def by_intervals_with_weights(self, method: Kernel) -> Array:
+        """Run a knot-oriented method that keeps the weights of a triangle."""
+        Z = self._output()
+        room = self._room(self._halvings, np.stack([np.eye(self.n + 1, dtype=int)] * 3) * self.one)
+        method(Z, self.T, self.P, self.U, self.W, self.ends[1], room)
         return Z
 
     def by_vertices(self, method: Kernel) -> Array:
