@@ -306,7 +306,9 @@ def test_the_pictures_of_the_pages_are_what_is_drawn(number):
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
-        (lambda: diagram("bohm"), ParameterError, "method 'bohm' given; expected one of boehm"),
+        (lambda: diagram("bohm"), ParameterError, "procedure 'bohm' given; expected one of de casteljau"),
+        (lambda: diagram("boehm", arguments=["u"]), ParameterError, "takes `new` or `knots`"),
+        (lambda: diagram("de boor", new=2), ParameterError, "takes `arguments`"),
         (lambda: diagram("morken"), ParameterError, "method 'morken' given, which has no scheme of its own"),
         (lambda: diagram("boehm", 0), ParameterError, "degree 0 given"),
         (lambda: diagram("boehm", new=0), ParameterError, "new 0 given"),
@@ -316,7 +318,7 @@ def test_the_pictures_of_the_pages_are_what_is_drawn(number):
         (lambda: diagram("boehm", 1, knots=["t₁", "u", 2]), KnotError, "knot 2 given; expected a name"),
         (lambda: diagram("boehm", 1, knots=["t + 1", "u", "t"]), KnotError, "'t + 1' given; expected a letter"),
         (lambda: diagram("boehm", 1, knots=["a", "u", "b", "a"]), KnotError, "knot a is there again after b"),
-        (lambda: figure("2.1"), ParameterError, "'2.1' given; expected one of 3.1"),
+        (lambda: figure("2.5"), ParameterError, "'2.5' given; expected one of 1.1"),
     ],
 )
 def test_bad_input(call, error, words):

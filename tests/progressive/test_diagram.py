@@ -458,7 +458,7 @@ def test_expressions():
         (lambda: diagram("de boor", 1, knots=["t + u", 0]), KnotError, "'t + u' given; expected a letter"),
         (lambda: diagram("de boor", 1, knots=["", 0]), KnotError, "'' given; expected a letter"),
         (lambda: diagram("goldman-change", 1, knots=[0, 1], arguments=[2, 0]), KnotError, "method 'goldman'"),
-        (lambda: figure("3.1"), ParameterError, "'3.1' given; expected one of 1.1"),
+        (lambda: figure("3.11"), ParameterError, "'3.11' given; expected one of 1.1"),
     ],
 )
 def test_bad_input(call, error, words):
