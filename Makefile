@@ -14,10 +14,10 @@ demo: .venv/installed  ## reduce a coastline and a drawing, and show what happen
 	$(BIN)/python examples/demo.py
 
 test: .venv/tested  ## run the tests on all cores
-	$(BIN)/python -m pytest --numprocesses $(CORES)
+	$(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
 
 thorough: .venv/tested  ## the same with a thousand new random examples for each property: takes long
-	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest --numprocesses $(CORES)
+	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
 
 bounds: .venv/tested  ## the tests, all compiled and with every index checked, and random periods with knots close together
 	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python -m pytest --numprocesses $(CORES)

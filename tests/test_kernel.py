@@ -6,6 +6,7 @@ import ast
 import copy
 import functools
 import importlib
+import inspect
 import os
 import pkgutil
 import stat
@@ -27,6 +28,8 @@ from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.polyline import reduce_polyline
 
 SOURCE = Path(kw.__file__).parent.parent
+#: one process compiles all kernels, while others do the rest
+compiling = pytest.mark.xdist_group("kernels")
 
 
 def run(code, tmp_path=None, **environment):
@@ -76,6 +79,29 @@ def both(monkeypatch):
 
     monkeypatch.setattr(Kernel, "__call__", call)
     return called
+
+
+#: which kernels each battery called that has run: the last test asks for all of them, and none needs to run twice
+TRIED: dict[tuple[object, ...], set[Kernel]] = {}
+
+
+def battery(test):
+    """Mark a test that runs kernels plain and compiled; called again, it only tells which kernels it called."""
+    signature = inspect.signature(test)
+
+    @functools.wraps(test)
+    def run(*args, **kwargs):
+        given = signature.bind(*args, **kwargs).arguments
+        both, key = given["both"], (test.__name__, *(x for name, x in given.items() if name != "both"))
+        if key not in TRIED:
+            before = set(both)
+            both.clear()
+            test(**given)
+            TRIED[key] = set(both)
+            both |= before
+        both |= TRIED[key]
+
+    return compiling(run)
 
 
 def points(rng, dtype, *shape):
@@ -130,11 +156,13 @@ def work_on(spline, axis=0):
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32, np.complex128])
+@battery
 def test_plain_and_compiled_agree_on_curves(both, dtype):
     for curve in curves(dtype):
         work_on(curve)
 
 
+@battery
 def test_plain_and_compiled_agree_on_surfaces(both):
     rng = np.random.default_rng(3)
     for shape, closed in (((6, 7, 2), (False, False)), ((6, 5, 2), (True, False))):
@@ -144,6 +172,7 @@ def test_plain_and_compiled_agree_on_surfaces(both):
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.complex128])
+@battery
 def test_plain_and_compiled_agree_on_removal(both, dtype):
     """Points of float32 are fitted in float64."""
     rng = np.random.default_rng(4)
@@ -159,6 +188,7 @@ def test_plain_and_compiled_agree_on_removal(both, dtype):
     kw.remove(net, net.spaces[0].breaks[1:-1], tolerance=1.0)
 
 
+@battery
 def test_plain_and_compiled_agree_on_elimination(both):
     space = kw.SplineSpace.clamped(3, 7)
     kw.stability.condition(space, space.with_knots([0.1, 0.5, 0.7]))
@@ -168,6 +198,7 @@ def test_plain_and_compiled_agree_on_elimination(both):
     ("knots", "dtype"),
     [(np.float64, np.float64), (np.float64, np.float32), (np.float64, np.complex128), (np.complex128, np.complex128)],
 )
+@battery
 def test_plain_and_compiled_agree_on_progressive_curves(both, knots, dtype):
     """Complex knots have variants of their own: complex quotients."""
     rng = np.random.default_rng(5)
@@ -196,6 +227,7 @@ def test_plain_and_compiled_agree_on_progressive_curves(both, knots, dtype):
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@battery
 def test_plain_and_compiled_agree_on_methods_of_insertion(both, dtype):
     """Every method compiles a kernel, which takes about a second, so each has one degree and one number of coordinates.
 
@@ -235,6 +267,7 @@ TEMPLATES = {
 }
 
 
+@compiling
 def test_every_kernel_is_tried(both):
     """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
     for module in pkgutil.walk_packages(kw.__path__, "knotwork."):
