@@ -203,7 +203,7 @@ def scattered(spaces: tuple[SplineSpace, ...], coefficients: Array, x: list[Arra
         for lo in range(start, stop, CHUNK):
             some = slice(lo, min(lo + CHUNK, stop))
             rows = [basis.rows(v[some], order) for basis, v in zip(bases, flat, strict=True)]
-            Q, rows = _gathered(P, rows, spaces, few)
+            Q, rows = _gathered(P, rows, spaces, few) if any(few) else (P, rows)
             flat_Q = Q.reshape(-1, width)
             if k == 1:
                 for values, E in zip(out, rows[0][1], strict=True):

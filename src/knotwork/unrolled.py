@@ -10,6 +10,7 @@ no weight of a combination is off by more than 2⁻¹⁹ of itself. The usual on
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,11 +42,7 @@ class Unrolled(NamedTuple):
         """Continue a period and its end around the seam: knot i + dimension is knot i + period."""
         N, k = len(t) - 1, degree + 1
         lo, hi = -k, N + 2 * k + 1
-        turns = [
-            moved(t[max(lo - turn * N, 0) : min(hi - turn * N, N)], turn, t[0], t[-1])
-            for turn in range(lo // N, (hi - 1) // N + 1)
-        ]
-        knots = np.concatenate(turns)
+        knots = np.concatenate([moved(t[part], turn, t[0], t[-1]) for turn, part in parts(lo, hi, N)])
         knots.setflags(write=False)
         return cls(degree, N, knots, k, (t[0], t[-1]))
 
@@ -55,11 +52,11 @@ class Unrolled(NamedTuple):
 
     def points(self, blocks: Array, start: int = 0, stop: int | None = None) -> Array:
         """Return control points start … stop - 1 over these knots, all by default, of blocks (A, dimension, B)."""
-        stop = len(self.knots) - self.degree - 1 if stop is None else stop
         if not self.period:
             return blocks[:, start:stop]
-        around: Array = np.take(blocks, self.own(np.arange(start, stop)), axis=1)
-        return around
+        stop = len(self.knots) - self.degree - 1 if stop is None else stop
+        lo, hi = start - self.zero, stop - self.zero
+        return np.concatenate([blocks[:, part] for _, part in parts(lo, hi, self.dimension)], axis=1)
 
     def opened(self, blocks: Array) -> tuple[Array, Array]:
         """Return a period as an ordinary spline over it, not clamped: its knots and control points."""
@@ -101,6 +98,12 @@ class Unrolled(NamedTuple):
         t, lo, k = self.knots[self.zero :], self.dimension, self.degree + 1
         length: Array = t[k : lo + k] - t[:lo]
         return length
+
+
+def parts(lo: int, hi: int, count: int) -> Iterator[tuple[int, slice]]:
+    """Yield the turns around `count` things that lo … hi - 1 reach, and which of the things they reach in each."""
+    for turn in range(lo // count, (hi - 1) // count + 1):
+        yield turn, slice(max(lo - turn * count, 0), min(hi - turn * count, count))
 
 
 def moved(knots: Array, turn: int, start: Any, end: Any) -> Array:

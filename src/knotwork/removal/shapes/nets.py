@@ -64,7 +64,7 @@ def _nets(curve: Spline, rational: bool) -> Array:
 
 def _cost(space: SplineSpace) -> float:
     """Return the error of float nets relative to the largest coordinate."""
-    t, n = space.unrolled[0], space.degree
+    t, n = space.unrolled.knots, space.degree
     if n <= 1 or np.array_equal(space.knots, SplineSpace.bezier(n, space.breaks).knots):  # points are copied
         return 0.0
     gaps = np.diff(t)
