@@ -20,7 +20,7 @@ thorough: .venv/tested  ## the same with a thousand new random examples for each
 	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
 
 bounds: .venv/tested  ## the tests, all compiled and with every index checked, and random periods with knots close together
-	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python -m pytest --numprocesses $(CORES)
+	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
 	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python tests/test_periodic.py 300000
 
 lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src
