@@ -186,6 +186,7 @@ def test_plain_and_compiled_agree_on_removal(both, dtype):
         assert len(kw.reduce(line, 0.5).removed)
     net = kw.surface(points(rng, dtype, 9, 4, 2))
     kw.remove(net, net.spaces[0].breaks[1:-1], tolerance=1.0)
+    kw.reduce(net, 0.5, effort="best")
 
 
 @battery

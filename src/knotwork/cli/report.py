@@ -113,13 +113,16 @@ def conversions(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _compared(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
-    counts = [sum(math.prod(r[what][i]) for r in rows) for what in ("points", "pieces") for i in (0, 1)]
+    if len(rows) == 1:  # each direction by itself
+        counts = [_by(f"{n:,}" for n in rows[0][what][i]) for what in ("points", "pieces") for i in (0, 1)]
+    else:
+        counts = [f"{sum(math.prod(r[what][i]) for r in rows):,}" for what in ("points", "pieces") for i in (0, 1)]
     degrees = sorted({_by(r["degree"]) for r in rows})
     bounds = [r["bound"] for r in rows]
     return [
         name,
         degrees[0] if len(degrees) == 1 else f"{degrees[0]}–{degrees[-1]}",
-        *(f"{n:,}" for n in counts),
+        *counts,
         shown(max(bounds), 3),
         duration(sum(r["seconds"] for r in rows)),
     ]

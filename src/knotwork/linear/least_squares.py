@@ -89,6 +89,26 @@ def least_squares(A: Banded, weight: Array, d: Array, pinned: dict[int, int] | N
     return _out_of_order(z) if A.wraps else z
 
 
+def factored(A: Banded, weight: Array, fixed: Array) -> tuple[Array, Array, Array]:
+    """Return R, D and where each column stands in them: AᵀWA = RᵀDR, R unit upper triangular and banded.
+
+    Columns that are `fixed` are taken as 0; they have a 0 in D.
+    """
+    first, X = _in_order(A)
+    n, band = A.columns, X.shape[1]
+    place = _folded(np.arange(n), n) if A.wraps else np.arange(n)
+    if len(fixed):
+        X = X.copy()
+        rows, r = np.nonzero(np.isin(first[:, None] + np.arange(band), place[fixed]))
+        X[rows, r] = 0 * X[rows, r]
+    order = np.argsort(first, kind="stable") if (first[1:] < first[:-1]).any() else slice(None)
+    R, D, nothing = np.zeros((n, band), X.dtype), np.zeros(n, X.dtype), np.zeros((max(n, len(first)), 0), X.dtype)
+    triangularise(
+        first[order], X[order], weight[order], nothing, R, D, nothing, np.empty(band, X.dtype), np.empty(0, X.dtype)
+    )
+    return R, D, place
+
+
 def _in_order(A: Banded) -> tuple[Array, Array]:
     """Return the rows of a matrix that wraps around with its columns folded: 0, n-1, 1, n-2, …, banded again."""
     if not A.wraps:

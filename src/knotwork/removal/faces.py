@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from knotwork.removal.features import Kept, kept_features
 from knotwork.removal.lyche_morken import search
 from knotwork.removal.problem import Original
 from knotwork.removal.result import Progress, Reduction
+from knotwork.removal.surfaces import without_lines
 from knotwork.spline import Spline
 
 DISTANCES = ("parametric", "geometric")
@@ -64,13 +66,17 @@ def remove(spline: Spline, knots: Any, axis: int = 0, tolerance: Any = 0.0) -> R
     True
     """
     axis = spline.axis(axis)
-    original = Original(spline, axis, tolerance)
     space = spline.spaces[axis]
     kept = space.without_knots(knots).knots
     values, counts = distinct(space.knots)
     gone = counts - multiplicities(kept, values)
     from_end = np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(space.knots))
     candidates = from_end < np.repeat(gone, counts)
+    if len(spline.spaces) > 1:
+        may = [candidates if i == axis else np.zeros(len(s.knots), bool) for i, s in enumerate(spline.spaces)]
+        reduction = without_lines(spline, may, tolerance, "normal")
+        return replace(reduction, removed=reduction.removed[axis])
+    original = Original(spline, axis, tolerance)
     result, mask = search(original, candidates, None)
     return Reduction(result.spline, original.told(result, "remove"), removed=space.knots[~mask])
 
@@ -89,12 +95,12 @@ def reduce(
     method: str | None = None,
     progress: Progress | None = None,
 ) -> Reduction:
-    """Return a curve with few knots within a tolerance of the given one.
+    """Return a spline with few knots within a tolerance of the given one.
 
     Parameters
     ----------
     spline : Spline
-        Of one parameter.
+        A curve, surface or volume; of the last two whole knot lines go, of all directions together.
     tolerance : float or array_like, shape (d,), or relative
         As in `remove`.
     distance : "parametric" or "geometric"
@@ -124,7 +130,7 @@ def reduce(
     Raises
     ------
     ParameterError
-        If the tolerance is negative or not finite, the spline has several parameters, or an option is not known.
+        If the tolerance is negative or not finite, or an option is not known.
 
     Warns
     -----
@@ -153,9 +159,9 @@ def reduce(
     if form != "spline":
         raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")
     if len(spline.spaces) != 1:
-        raise ParameterError(
-            f"reduce takes curves; this spline has {len(spline.spaces)} parameters: remove(…, axis=…) takes named knots"
-        )
+        if keep is not None or ends != 0 or method is not None:
+            raise ParameterError("keep, ends or method given; surfaces and volumes take none of them, and keep corners")
+        return without_lines(spline, [space.removable for space in spline.spaces], tolerance, effort, progress)
     pinned, stay = kept_features(spline, keep, ends)
     original = Original(spline, 0, tolerance, pinned)
     candidates: Array = spline.space.removable & ~stay
