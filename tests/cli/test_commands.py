@@ -290,6 +290,20 @@ def test_reduce_keeps_the_degree_unless_asked(run, wave):
     assert read("small.csv")[0].degree == (1,)
 
 
+def test_reduce_takes_surfaces_and_names_both_directions(run):
+    x, y = np.linspace(0, 1, 20)[:, None], np.linspace(0, 1, 15)
+    net = kw.surface(np.stack([x + 0 * y, y + 0 * x, np.sin(3 * x) * y**2], axis=-1))
+    write("surface.json", [net])
+    told = run("reduce", "surface.json", "-t", "0.01", "-o", "out.json").output
+    small = read("out.json")[0]
+    n, m = (space.dimension for space in small.spaces)
+    assert n * m < 60
+    assert "20 × 15" in told
+    assert f"{n} × {m}" in told
+    u = np.linspace(0, 1, 50)
+    assert np.linalg.norm(small(u, u, grid=True) - net(u, u, grid=True), axis=-1).max() <= 0.01
+
+
 def test_reduce_without_output_only_reports(run, wave):
     text = run("reduce", "wave.csv", "-t", "1%").stdout
     assert text.startswith("wave.csv: 1 spline, tolerance 0.1\n")
