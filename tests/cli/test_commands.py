@@ -297,7 +297,7 @@ def test_reduce_takes_surfaces_and_names_both_directions(run):
     told = run("reduce", "surface.json", "-t", "0.01", "-o", "out.json").output
     small = read("out.json")[0]
     n, m = (space.dimension for space in small.spaces)
-    assert n * m < 60
+    assert n * m < 100
     assert "20 × 15" in told
     assert f"{n} × {m}" in told
     u = np.linspace(0, 1, 50)
