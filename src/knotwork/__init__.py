@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from knotwork import progressive as progressive
     from knotwork import stability as stability
     from knotwork.conversion import Conversion, PolynomialPieces, convert, elevate, from_pieces, lower
-    from knotwork.files import Written, read, write
+    from knotwork.files import Document, Written, open, read, write
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
@@ -25,6 +25,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Conversion",
     "Distance",
+    "Document",
     "Matching",
     "PolynomialPieces",
     "Reduction",
@@ -44,6 +45,7 @@ __all__ = [
     "insert",
     "insertion_matrix",
     "lower",
+    "open",
     "plot",
     "progressive",
     "read",
@@ -63,7 +65,7 @@ _PARTS = {
     "arithmetic": (),
     "conversion": ("Conversion", "PolynomialPieces", "convert", "elevate", "from_pieces", "lower"),
     "diagrams": (),
-    "files": ("Written", "read", "write"),
+    "files": ("Document", "Written", "open", "read", "write"),
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),
     "progressive": ("blossom", "segment"),

@@ -382,7 +382,7 @@ def test_plot_without_matplotlib_says_what_to_install(run, curve, monkeypatch):
     ("words", "message"),
     [
         ("info nothing.json", "nothing.json: there is no such file"),
-        ("convert curve.json -o a.xyz", "a.xyz: unknown suffix '.xyz'; expected one of .csv, .json, .npz, .svg"),
+        ("convert curve.json -o a.xyz", "a.xyz: unknown suffix '.xyz'; expected one of .json, .npz, .csv"),
         ("convert curve.json -o nowhere/a.json", "nowhere/a.json: there is no directory nowhere"),
         ("convert curve.json -o .", "expected"),
         ("convert curve.json -o a.csv", "a.csv: "),

@@ -11,13 +11,13 @@ import pytest
 
 import knotwork as kw
 from knotwork.errors import FileError, ParameterError
-from knotwork.files import FORMATS, Written, read, write
+from knotwork.files import SUFFIXES, Written, read, write
 
 CURVE = kw.curve([[0, 0], [1, 2], [3, 1]], degree=1)
 GARBAGE = bytes(range(256)) * 40
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_every_format_gives_back_what_was_written(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"curve{suffix}"
     assert write(path, CURVE) == Written(path, 1, 0.0)
@@ -34,11 +34,11 @@ def test_a_suffix_in_capitals_is_the_same(tmp_path: Path) -> None:
 
 def test_an_unknown_suffix_names_the_known_ones(tmp_path: Path) -> None:
     for action in (lambda: read(tmp_path / "x.pdf"), lambda: write(tmp_path / "x.pdf", CURVE)):
-        with pytest.raises(FileError, match=r"x\.pdf: unknown suffix '\.pdf'; expected one of \.csv, \.json"):
+        with pytest.raises(FileError, match=r"x\.pdf: unknown suffix '\.pdf'; expected one of \.json, .*: pdftocairo"):
             action()
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_files_that_cannot_be_read(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"a{suffix}"
     with pytest.raises(FileError, match=rf"a\{suffix}: there is no such file"):
@@ -62,7 +62,7 @@ def test_files_that_cannot_be_read(tmp_path: Path, suffix: str) -> None:
             read(path)
 
 
-@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize("suffix", SUFFIXES)
 def test_damage_anywhere_is_an_error_or_a_spline(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"a{suffix}"
     write(path, [CURVE, kw.curve([[0, 0], [1, 2], [3, 1]], degree=1, periodic=True)])

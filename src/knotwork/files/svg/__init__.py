@@ -6,5 +6,6 @@ Reading: `document` holds the XML and says what is drawn where, `shapes` and `pa
 
 from knotwork.files.svg.document import decode
 from knotwork.files.svg.drawing import encode
+from knotwork.files.svg.inplace import opened
 
-__all__ = ["decode", "encode"]
+__all__ = ["decode", "encode", "opened"]

@@ -4,20 +4,39 @@ from __future__ import annotations
 
 import contextlib
 import math
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from knotwork.errors import FileError
-from knotwork.files.svg.notation import IDENTITY, Affine, compose, length, numbers, transform
+from knotwork.files.svg.notation import IDENTITY, Affine, compose, css_transform, length, numbers, transform
+from knotwork.files.svg.origins import box_of, origin
 from knotwork.files.svg.outlines import curves
+from knotwork.files.svg.pathdata import Subpath
 from knotwork.files.svg.shapes import OUTLINES, Sizes, Whole, outline
-from knotwork.files.svg.styles import Styles
+from knotwork.files.svg.styles import LENGTHS, Styles
 from knotwork.files.svg.tree import DEPTH, Element, parse
 from knotwork.spline import Spline
 
 #: what `use` may draw again, at most: elements, plus one for each 160 characters of their attributes
 COPIES = 100_000
+_LABEL = "http://www.inkscape.org/namespaces/inkscape label"
+_PATH = re.compile(r"path\(\s*([\"'])(.*)\1\s*\)", re.DOTALL)
 _GROUPS = ("g", "a", "svg", "switch")
+
+
+def walk(data: bytes, remark: Callable[[str], None]) -> Drawn:
+    """Return the document, ready to be walked through.
+
+    Raises
+    ------
+    FileError
+        If the document is damaged, or made to exhaust the machine.
+    """
+    root = parse(data)
+    if root.tag != "svg":
+        raise FileError(f"line {root.line}: the root element is {root.tag or 'of another kind'!r}; expected svg")
+    return Drawn(root, remark)
 
 
 def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
@@ -28,14 +47,11 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
     FileError
         If the document is damaged, or made to exhaust the machine.
     """
-    root = parse(data)
-    if root.tag != "svg":
-        raise FileError(f"line {root.line}: the root element is {root.tag or 'of another kind'!r}; expected svg")
-    drawn = Drawn(root, remark)
+    drawn = walk(data, remark)
     found: list[Spline] = []
     for element, place in list(drawn.shapes()):  # all of the walk first, which may find that it goes too far
         with _at(element):
-            found += curves(outline(element.tag, element.attributes, place.whole), place.map)
+            found += curves(drawn.outline(element, place), place.map)
     return found
 
 
@@ -46,6 +62,9 @@ class Place:
     map: Affine
     whole: Whole
     visible: bool = True
+    filled: bool = True
+    stroked: bool = False
+    layer: str | None = None
     chain: tuple[str, ...] = ()
     depth: int = 0
 
@@ -59,12 +78,39 @@ class Drawn:
         self.styles = Styles(root)
         self.names: dict[str, Element] = {}
         self.copies = 0
+        self.remarked: set[str] = set()
         self._name(root)
+
+    def outline(self, element: Element, place: Place) -> list[Subpath]:
+        """Return the subpaths of an element in its own coordinates."""
+        return outline(element.tag, self.attributes(element), place.whole, self._remark_at(element))
+
+    def attributes(self, element: Element) -> dict[str, str]:
+        """Return the attributes of an element, with the geometry that style sheets set."""
+        declared = {name: self.styles.declared(element, name) for name in (*LENGTHS, "d")}
+        if declared["d"]:
+            path = _PATH.fullmatch(declared["d"])
+            declared["d"] = path[2] if path else ""
+        return element.attributes | {name: value for name, value in declared.items() if value}
+
+    def _remark_at(self, element: Element) -> Callable[[str], None]:
+        """Return a function that remarks something of an element, once."""
+
+        def remark(text: str) -> None:
+            told = f"line {element.line}, <{element.tag}>: {text}"
+            if told not in self.remarked:
+                self.remarked.add(told)
+                self.remark(told)
+
+        return remark
 
     def shapes(self) -> Iterator[tuple[Element, Place]]:
         """Yield the elements that draw outlines, in order, each with its place."""
-        with _at(self.root):
+        try:
             whole = _whole_of_root(self.root)
+        except FileError as exc:
+            self._remark_at(self.root)(str(exc))
+            whole = (None, None, None)
         return self._element(self.root, Place(IDENTITY, whole))
 
     def _name(self, element: Element) -> None:
@@ -84,8 +130,7 @@ class Drawn:
             self.copies += 1 + sum(map(len, element.attributes.values())) // 160
             if self.copies > COPIES:
                 raise FileError(f"line {element.line}: use elements multiply the drawing beyond {COPIES} elements")
-        with _at(element):
-            place = self._inside(element, place)
+        place = self._inside(element, place)
         if element.tag in OUTLINES:
             if place.visible:
                 yield element, place
@@ -97,13 +142,54 @@ class Drawn:
 
     def _inside(self, element: Element, place: Place) -> Place:
         """Return the place of what an element draws."""
-        total = compose(place.map, transform(element.attributes.get("transform", "")))
+        total = compose(place.map, self._own_map(element, place))
         visibility = self.styles.value(element, "visibility")
         visible = visibility == "visible" if visibility in ("visible", "hidden", "collapse") else place.visible
-        place = replace(place, map=total, visible=visible, depth=place.depth + 1)
+        fill, stroke = (self.styles.value(element, name) for name in ("fill", "stroke"))
+        filled = place.filled if fill in ("", "inherit") else fill != "none"
+        stroked = place.stroked if stroke in ("", "inherit") else stroke != "none"
+        named = element.attributes.get(_LABEL) or element.attributes.get("id")
+        layer = named if element.tag == "g" and named else place.layer
+        place = replace(
+            place, map=total, visible=visible, filled=filled, stroked=stroked, layer=layer, depth=place.depth + 1
+        )
         if element.tag == "svg" and element is not self.root:
-            return _viewport(element, element, place)
+            return self._viewport(element, element, place)
         return place
+
+    def _own_map(self, element: Element, place: Place) -> Affine:
+        """Return the map that an element's transform means, about its origin (CSS Transforms 1, §5)."""
+        remark = self._remark_at(element)
+        try:
+            declared = self.styles.declared(element, "transform")
+            box = self._box(element, place) if declared or self.styles.value(element, "transform-origin") else None
+            if declared:
+                assert box is not None
+                own = css_transform(declared, (box[2], box[3]))
+            else:
+                own = transform(element.attributes.get("transform", ""))
+            if box is None or own == IDENTITY:
+                return own
+            x, y = origin(self.styles.value(element, "transform-origin"), box)
+            return compose(compose((1.0, 0.0, 0.0, 1.0, x, y), own), (1.0, 0.0, 0.0, 1.0, -x, -y))
+        except FileError as exc:
+            remark(str(exc))
+            return IDENTITY
+
+    def _box(self, element: Element, place: Place) -> tuple[float, float, float | None, float | None]:
+        """Return the box that an origin and percentages refer to: x, y, width, height."""
+        if self.styles.value(element, "transform-box") in ("fill-box", "content-box") and element.tag in OUTLINES:
+            found = box_of(self.outline(element, place))
+            if found:
+                return found
+        return 0.0, 0.0, place.whole[0], place.whole[1]
+
+    def _viewport(self, element: Element, use: Element, place: Place) -> Place:
+        try:
+            return _viewport(element, use, place, self._remark_at(element))
+        except FileError as exc:
+            self._remark_at(element)(str(exc))
+            return place
 
     def _use(self, use: Element, place: Place) -> Iterator[tuple[Element, Place]]:
         name = use.attributes.get("href", "")
@@ -114,18 +200,16 @@ class Drawn:
         if name in place.chain:
             raise FileError(f"line {use.line}: use of {name!r} inside itself")
         place = replace(place, chain=(*place.chain, name))
-        with _at(use):
-            sizes = Sizes(use.attributes, place.whole)
-            shift = (1.0, 0.0, 0.0, 1.0, sizes.across("x"), sizes.down("y"))
-            place = replace(place, map=compose(place.map, shift))
+        sizes = Sizes(self.attributes(use), place.whole, self._remark_at(use))
+        shift = (1.0, 0.0, 0.0, 1.0, sizes.across("x"), sizes.down("y"))
+        place = replace(place, map=compose(place.map, shift))
         if target.tag not in ("symbol", "svg"):
             yield from self._element(target, place)
             return
         if self.styles.value(target, "display") == "none":
             return
-        with _at(target):
-            inherited = replace(place, map=compose(place.map, transform(target.attributes.get("transform", ""))))
-            inside = _viewport(target, use, inherited)
+        inherited = replace(place, map=compose(place.map, self._own_map(target, place)))
+        inside = self._viewport(target, use, inherited)
         for child in target.children:
             yield from self._element(child, inside)
 
@@ -149,12 +233,12 @@ def _whole(w: float | None, h: float | None) -> Whole:
     return w, h, None if w is None or h is None else math.hypot(w, h) / math.sqrt(2)
 
 
-def _viewport(element: Element, use: Element, place: Place) -> Place:
+def _viewport(element: Element, use: Element, place: Place, remark: Callable[[str], None]) -> Place:
     """Return the place inside a nested svg or symbol: shifted to its x and y, and its viewBox fitted into its size.
 
     The width and height are those of the `use` element, if it gives them.
     """
-    sizes = Sizes(element.attributes, place.whole)
+    sizes = Sizes(element.attributes, place.whole, remark)
     place = replace(place, map=compose(place.map, (1.0, 0.0, 0.0, 1.0, sizes.across("x"), sizes.down("y"))))
     given = [use.attributes.get(name, element.attributes.get(name, "auto")) for name in ("width", "height")]
     width, height = (_extent(text, whole) for text, whole in zip(given, place.whole[:2], strict=True))
@@ -170,7 +254,7 @@ def _viewport(element: Element, use: Element, place: Place) -> Place:
 def _extent(text: str, whole: float | None) -> float | None:
     """Return a width or height, None if it is a part of a whole that is not known."""
     text = "100%" if text.strip() == "auto" else text
-    if whole is None and "%" in text:
+    if whole is None and text.strip().endswith(("%", "vw", "vh", "vmin", "vmax")):
         return None
     value = length(text, whole)
     if value < 0:

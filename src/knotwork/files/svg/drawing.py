@@ -75,13 +75,27 @@ def _pieces(spline: Spline, place: str) -> Array:
     return nets
 
 
+def pieces_of(spline: Spline, place: str, relative: float) -> tuple[Array, float]:
+    """Return Bézier points of pieces of degree 1 to 3, shape (m, degree + 1, 2), and how far they are at most.
+
+    Those that must be approximated are within a part of the curve's extent.
+    """
+    nets = _pieces(spline, place)
+    points = nets[..., :2] / nets[..., 2:]
+    extent = float(np.ptp(points, axis=(0, 1)).max()) or 1.0
+    return _cubics_at_most(spline, nets, relative * extent)
+
+
+def _cubics_at_most(spline: Spline, nets: Array, accuracy: float) -> tuple[Array, float]:
+    """Return pieces of degree 3 at most from homogeneous ones, and how far they are."""
+    if spline.rational or spline.space.degree > 3:
+        return cubics(nets, accuracy)
+    return nets[..., :2], 0.0
+
+
 def _path(spline: Spline, nets: Array, accuracy: float) -> tuple[str, float]:
     """Return path data, and the bound of its error."""
-    bound = 0.0
-    if spline.rational or spline.space.degree > 3:
-        pieces, bound = cubics(nets, accuracy)
-    else:
-        pieces = nets[..., :2]
+    pieces, bound = _cubics_at_most(spline, nets, accuracy)
     letter = _LETTER[pieces.shape[1] - 1]
     rows = pieces.tolist()
     whole = spline.space.periodic

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from knotwork.errors import FileError
-from knotwork.files.svg.notation import length, numbers
+from knotwork.files.svg.notation import leading_numbers, length
 from knotwork.files.svg.pathdata import Subpath, subpaths
 
 #: width, height and normalised diagonal of the surrounding viewport, which percentages refer to; None if not known
@@ -13,11 +14,12 @@ Whole = tuple[float | None, float | None, float | None]
 
 
 class Sizes:
-    """The lengths among the attributes of an element."""
+    """The lengths among the attributes of an element. One that is damaged counts as not given, and that is remarked."""
 
-    def __init__(self, attributes: dict[str, str], whole: Whole) -> None:
+    def __init__(self, attributes: dict[str, str], whole: Whole, remark: Callable[[str], None]) -> None:
         self.attributes = attributes
         self.whole = whole
+        self.remark = remark
 
     def across(self, name: str, default: str = "0") -> float:
         """Return a length along x."""
@@ -28,43 +30,48 @@ class Sizes:
         return self._length(name, default, self.whole[1])
 
     def radius(self, name: str) -> float:
-        """Return a length in any direction."""
-        return self._size(name, self._length(name, "0", self.whole[2]))
+        """Return a length in any direction that is not negative."""
+        return self._length(name, "0", self.whole[2], least=0)
 
     def width(self, name: str) -> float:
         """Return a length along x that is not negative."""
-        return self._size(name, self.across(name))
+        return self._length(name, "0", self.whole[0], least=0)
 
     def height(self, name: str) -> float:
         """Return a length along y that is not negative."""
-        return self._size(name, self.down(name))
+        return self._length(name, "0", self.whole[1], least=0)
 
     def radii(self) -> tuple[float, float]:
         """Return rx and ry: one that is missing or auto is as the other."""
-        given = [self.attributes.get(name, "auto").strip() != "auto" for name in ("rx", "ry")]
-        rx = self.width("rx") if given[0] else None
-        ry = self.height("ry") if given[1] else None
+        rx, ry = self._radius("rx", self.whole[0]), self._radius("ry", self.whole[1])
         return (rx if rx is not None else ry or 0.0), (ry if ry is not None else rx or 0.0)
 
-    def _length(self, name: str, default: str, whole: float | None) -> float:
+    def _radius(self, name: str, whole: float | None) -> float | None:
+        if self.attributes.get(name, "auto").strip() == "auto":
+            return None
+        return self._length(name, "0", whole, least=0)
+
+    def _length(self, name: str, default: str, whole: float | None, least: float = -math.inf) -> float:
         try:
-            return length(self.attributes.get(name, default), whole)
+            value = length(self.attributes.get(name, default), whole)
+            if value >= least:
+                return value
+            raise FileError(f"{value} given; expected no negative length")
         except FileError as exc:
-            raise FileError(f"{name}: {exc}") from None
-
-    def _size(self, name: str, value: float) -> float:
-        if value < 0:
-            raise FileError(f"{name}: {value} given; expected no negative length")
-        return value
+            self.remark(f"{name}: {exc}")
+            return length(default, whole)
 
 
-def outline(tag: str, attributes: dict[str, str], whole: Whole) -> list[Subpath]:
-    """Return the subpaths of a shape; none if a length of zero makes it invisible."""
-    return OUTLINES[tag](Sizes(attributes, whole))
+def outline(tag: str, attributes: dict[str, str], whole: Whole, remark: Callable[[str], None]) -> list[Subpath]:
+    """Return the subpaths of a shape; none if a length of zero makes it invisible.
+
+    What is damaged is drawn as far as it goes, and `remark` is told.
+    """
+    return OUTLINES[tag](Sizes(attributes, whole, remark))
 
 
 def _path(a: Sizes) -> list[Subpath]:
-    return subpaths(a.attributes.get("d", ""))
+    return subpaths(a.attributes.get("d", ""), a.remark)
 
 
 def _line(a: Sizes) -> list[Subpath]:
@@ -74,12 +81,12 @@ def _line(a: Sizes) -> list[Subpath]:
 
 
 def _polyline(a: Sizes) -> list[Subpath]:
-    values = numbers(a.attributes.get("points", ""))
-    if len(values) % 2:
-        raise FileError(f"points: {len(values)} numbers given; expected pairs")
-    if not values:
+    values, wrong = leading_numbers(a.attributes.get("points", ""))
+    if wrong or len(values) % 2:
+        a.remark(f"points: {wrong or f'{len(values)} numbers given; expected pairs'}")
+    if len(values) < 2:
         return []
-    points = list(zip(values[::2], values[1::2], strict=True))
+    points = list(zip(values[: len(values) // 2 * 2 : 2], values[1::2], strict=True))
     path = Subpath(points[0])
     path.line(*points[1:])
     return [path]

@@ -1,4 +1,4 @@
-"""Which elements are shown: `display` and `visibility`, from attributes, style attributes and style sheets."""
+"""Style sheets: what is shown, and the geometry that may stand there instead of in attributes (SVG 2, §6, §8.5)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,15 @@ from knotwork.files.svg.tree import Element
 
 _SELECTOR = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
 _PART = re.compile(r"[.#][\w-]+")
-_PROPERTIES = ("display", "visibility")
+#: properties that say whether something is drawn
+SHOWN = ("display", "visibility")
+#: lengths that may stand in a style sheet
+LENGTHS = ("cx", "cy", "r", "rx", "ry", "x", "y", "width", "height")
+#: properties that place something
+PLACED = ("transform", "transform-origin", "transform-box")
+#: whether the inside and the line are drawn
+PAINTED = ("fill", "stroke")
+_PROPERTIES = frozenset((*SHOWN, *LENGTHS, *PLACED, *PAINTED, "d"))
 
 
 class Styles:
@@ -34,10 +42,14 @@ class Styles:
 
     def value(self, element: Element, name: str) -> str:
         """Return what a property of an element is set to; '' if it is not."""
+        return self.declared(element, name) or element.attributes.get(name, "").strip()
+
+    def declared(self, element: Element, name: str) -> str:
+        """Return what style sheets and the style attribute set a property to; '' if they do not."""
         own = _declarations(element.attributes.get("style", "")).get(name)
         if own:
             return own
-        value = element.attributes.get(name, "").strip()
+        value = ""
         if self.rules:
             names = {f".{name}" for name in element.attributes.get("class", "").split()}
             names.add(f"#{element.attributes.get('id')}")
@@ -64,6 +76,8 @@ def _declarations(text: str) -> dict[str, str]:
     found = {}
     for declaration in text.split(";"):
         name, _, value = declaration.partition(":")
-        if name.strip().lower() in _PROPERTIES:
-            found[name.strip().lower()] = value.partition("!")[0].strip().lower()
+        name = name.strip().lower()
+        if name in _PROPERTIES:
+            value = value.partition("!")[0].strip()
+            found[name] = value.lower() if name in (*SHOWN, *PAINTED) else value
     return found

@@ -24,6 +24,8 @@ class Element:
     tag: str
     attributes: dict[str, str]
     line: int
+    #: where its tag begins, in bytes
+    start: int = -1
     children: list[Element] = field(default_factory=list)
     text: str = ""
 
@@ -70,7 +72,8 @@ class _Reader:
         plain = {key.removeprefix(f"{_XLINK} "): value for key, value in attributes.items()}
         if f"{_XLINK} href" in attributes and "href" in attributes:
             plain["href"] = attributes["href"]
-        element = Element(local if space in ("", _SVG) else "", plain, self.parser.CurrentLineNumber)
+        start = self.parser.CurrentByteIndex
+        element = Element(local if space in ("", _SVG) else "", plain, self.parser.CurrentLineNumber, start)
         self.stack[-1].children.append(element)
         self.stack.append(element)
 

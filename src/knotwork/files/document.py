@@ -1,0 +1,192 @@
+"""A document: what surrounds the splines of a file. What is not replaced is written back byte for byte."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+from knotwork.errors import FileError, KnotworkError, ParameterError
+from knotwork.files.formats import Written, codec_of, write
+from knotwork.files.places import Place
+from knotwork.files.storage import fetch
+from knotwork.files.storage import replace as replace_file
+from knotwork.spline import Spline
+
+
+class Content(Protocol):
+    """What a format keeps of a file, to write it again."""
+
+    splines: tuple[Spline, ...]
+    places: tuple[Place, ...]
+
+    def rewritten(
+        self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool
+    ) -> tuple[bytes, float]:
+        """Return the bytes with some splines replaced, and how far rounding moved a point at most."""
+        ...
+
+
+@dataclass(frozen=True)
+class Document:
+    """The splines of a file in what surrounds them. A value: `map` and `replace` give new ones.
+
+    Attributes
+    ----------
+    path : Path
+        The file that it was read from.
+    splines : tuple of Spline
+        Each in the coordinates in which the file holds it.
+    places : tuple of Place
+        For each spline its name, layer, whether it is closed, filled and stroked, its units, where in the file it
+        stands and at which scale it is drawn.
+    """
+
+    path: Path
+    splines: tuple[Spline, ...]
+    places: tuple[Place, ...]
+    _content: Any = field(repr=False)
+    #: how far rounding may move the points of a spline that is written, in its own coordinates
+    _accuracy: dict[int, float] = field(default_factory=dict, repr=False)
+
+    def map(self, f: Callable[[Spline], Spline]) -> Document:
+        """Return the document with splines replaced by what a function makes of them.
+
+        Those that are `fixed` in their places stay as they are: circles and rectangles of a drawing, say.
+        """
+        free = [i for i, place in enumerate(self.places) if not place.fixed]
+        return self._with({i: f(self.splines[i]) for i in free})
+
+    def replace(self, index: int, spline: Spline) -> Document:
+        """Return the document with one spline replaced."""
+        if not 0 <= index < len(self.splines):
+            raise ParameterError(f"spline {index} given; the document holds {len(self.splines)}")
+        return self._with({index: spline})
+
+    def rounding(self, accuracy: Mapping[int, float]) -> Document:
+        """Return the document with numbers that may be rounded when it is written.
+
+        Parameters
+        ----------
+        accuracy : mapping from int to float
+            How far rounding may move the points of a spline, in its own coordinates.
+        """
+        return replace(self, _accuracy={**self._accuracy, **accuracy})
+
+    def _with(self, changed: Mapping[int, Spline]) -> Document:
+        for i, spline in changed.items():
+            if not isinstance(spline, Spline):
+                raise ParameterError(f"{type(spline).__name__} given for spline {i}; expected a Spline")
+        return replace(self, splines=tuple(changed.get(i, spline) for i, spline in enumerate(self.splines)))
+
+    def bytes(self, *, even_if_longer: bool = False) -> tuple[bytes, float]:
+        """Return the bytes of the document, and how far rounding moved a point at most, as it is drawn."""
+        before = self._content.splines
+        changed = {i: s for i, s in enumerate(self.splines) if s is not before[i]}
+        data, bound = self._content.rewritten(changed, self._accuracy, even_if_longer=even_if_longer)
+        return data, bound
+
+    def write(self, path: str | os.PathLike[str], *, even_if_longer: bool = False) -> Written:
+        """Write the document, whole or not at all.
+
+        Parameters
+        ----------
+        path : path-like
+            Of the suffix that the document was read with: its bytes, with the splines that were replaced in their
+            places. Of another one: the splines, in that format.
+        even_if_longer : bool
+            Whether a spline that was replaced is written even where its text is longer than what was there.
+
+        Returns
+        -------
+        Written
+            With the bound of the error of what is written.
+
+        Raises
+        ------
+        FileError
+            If the format cannot hold a spline, or the file cannot be written.
+        """
+        path = Path(path)
+        if path.suffix.lower() != self.path.suffix.lower():
+            return write(path, list(self.splines))
+        try:
+            data, bound = self.bytes(even_if_longer=even_if_longer)
+        except KnotworkError as exc:
+            raise FileError(f"{path}: {exc}") from exc
+        replace_file(path, data)
+        return Written(path, len(self.splines), bound)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """The content of a format that has nothing but splines: written anew when one of them changes."""
+
+    data: bytes
+    codec: Any
+    splines: tuple[Spline, ...]
+    places: tuple[Place, ...]
+
+    def rewritten(
+        self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
+    ) -> tuple[bytes, float]:
+        """Return the bytes as they were, or those of all splines."""
+        if not changed:
+            return self.data, 0.0
+        data, bound = self.codec.encode([changed.get(i, s) for i, s in enumerate(self.splines)], None)
+        return data, bound
+
+
+def open_document(path: str | os.PathLike[str]) -> Document:
+    """Open a file as a document, which is written back as it was but for the splines that are replaced.
+
+    Parameters
+    ----------
+    path : path-like
+        The suffix tells the format; ``knotwork formats`` lists them.
+
+    Raises
+    ------
+    FileError
+        As for `read`; a document may hold no spline.
+
+    Warns
+    -----
+    UserWarning
+        If something in the file is damaged and had to be left out; the message tells the place.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import knotwork as kw
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "roof.svg"
+    >>> _ = path.write_text('<svg><g id="house"><path id="roof" fill="red" d="M 0 1 L 2 0 L 4 1 Z"/></g></svg>')
+    >>> drawing = kw.open(path)
+    >>> drawing.places[0].name, drawing.places[0].layer, drawing.places[0].closed
+    ('roof', 'house', True)
+    >>> drawing.bytes()[0] == path.read_bytes()
+    True
+    """
+    path = Path(path)
+    codec = codec_of(path)
+    data = fetch(path)
+    remarks: list[str] = []
+    try:
+        if hasattr(codec, "opened"):
+            content = codec.opened(data, remarks.append)
+        else:
+            splines = tuple(codec.decode(data, remarks.append))
+            places = tuple(_place(spline, i) for i, spline in enumerate(splines))
+            content = Whole(data, codec, splines, places)
+    except KnotworkError as exc:
+        raise FileError(f"{path}: {exc}") from exc
+    for remark in remarks:
+        warnings.warn(f"{path}: {remark}", UserWarning, stacklevel=2)
+    return Document(path, content.splines, content.places, content)
+
+
+def _place(spline: Spline, index: int) -> Place:
+    return Place(closed=all(space.periodic for space in spline.spaces), where=f"spline {index}")

@@ -1,0 +1,191 @@
+"""A drawing in place: its curves in their own coordinates, and path data put back where it stood.
+
+Each path or shape is read once, however often `use` draws it. What is replaced is the value of one attribute; all other
+bytes stay.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.errors import FileError
+from knotwork.files.places import Place
+from knotwork.files.svg.compact import Encoder, Pen, digits_for, joined, moved
+from knotwork.files.svg.document import Place as DrawnAt
+from knotwork.files.svg.document import walk
+from knotwork.files.svg.drawing import pieces_of
+from knotwork.files.svg.notation import IDENTITY, Affine
+from knotwork.files.svg.outlines import curves
+from knotwork.files.svg.pathdata import Subpath
+from knotwork.files.svg.source import Span, span, spliced
+from knotwork.files.svg.tree import Element
+from knotwork.spline import Spline
+
+#: how near cubics are to curves that path data cannot hold, per size of the curve
+NEAR = 1e-6
+
+
+class Outline(NamedTuple):
+    """An element that is drawn."""
+
+    element: Element
+    #: where its data stands; None if it cannot be replaced
+    span: Span | None
+    #: its subpaths, and which splines of the document they are; -1 for those that go nowhere
+    subpaths: list[Subpath]
+    splines: list[int]
+    #: the largest scale at which it is drawn
+    scale: float
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """The bytes of a drawing and what is drawn by them."""
+
+    data: bytes
+    outlines: tuple[Outline, ...]
+    splines: tuple[Spline, ...]
+    places: tuple[Place, ...]
+
+    def rewritten(
+        self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
+    ) -> tuple[bytes, float]:
+        """Return the bytes with some splines replaced, and how far rounding moved a point at most, as drawn.
+
+        Parameters
+        ----------
+        changed : mapping from int to Spline
+            The new splines, in the coordinates of their elements.
+        accuracy : mapping from int to float
+            How far rounding may move the points of each spline, in the same coordinates; by default not at all.
+        even_if_longer : bool
+            Whether to write path data that has more bytes than there were.
+        """
+        values: dict[Span, bytes] = {}
+        worst = 0.0
+        for outline in self.outlines:
+            if not any(i in changed or i in accuracy for i in outline.splines):
+                continue
+            if outline.span is None:
+                if any(i in changed for i in outline.splines):
+                    raise FileError(
+                        f"line {outline.element.line}: the data of <{outline.element.tag}> cannot be replaced"
+                    )
+                continue
+            text, bound = _text(outline, changed, accuracy)
+            a, b = outline.span
+            if even_if_longer or len(text) < b - a:
+                values[outline.span] = text.encode()
+                worst = max(worst, bound * outline.scale)
+        return spliced(self.data, values), worst
+
+
+def opened(data: bytes, remark: Callable[[str], None]) -> Drawing:
+    """Return the drawing in the bytes of a file.
+
+    Raises
+    ------
+    FileError
+        If the document is damaged, or made to exhaust the machine.
+    """
+    drawn = walk(data, remark)
+    once: dict[int, tuple[Element, DrawnAt]] = {}
+    scales: dict[int, float] = {}
+    for element, drawn_at in list(drawn.shapes()):
+        once.setdefault(id(element), (element, drawn_at))
+        scales[id(element)] = max(scales.get(id(element), 0.0), _scale(drawn_at.map))
+    outlines: list[Outline] = []
+    splines: list[Spline] = []
+    places: list[Place] = []
+    for key, (element, at) in once.items():
+        subpaths = drawn.outline(element, at)
+        declared = drawn.styles.declared(element, "d")
+        stands = span(data, element, "d") if element.tag == "path" and not declared else None
+        indices = []
+        for number, subpath in enumerate(subpaths):
+            found = curves([subpath], IDENTITY)
+            indices.append(len(splines) if found else -1)
+            for spline in found:
+                splines.append(spline)
+                name = element.attributes.get("id")
+                where = f"line {element.line}, <{element.tag}>"
+                places.append(
+                    Place(
+                        name=name,
+                        layer=at.layer,
+                        closed=subpath.closed,
+                        filled=at.filled,
+                        stroked=at.stroked,
+                        units="px",
+                        where=f"{where}, subpath {number + 1}" if len(subpaths) > 1 else where,
+                        scale=scales[key],
+                        fixed=stands is None,
+                    )
+                )
+        outlines.append(Outline(element, stands, subpaths, indices, scales[key]))
+    return Drawing(data, tuple(outlines), tuple(splines), tuple(places))
+
+
+def _scale(place: Affine) -> float:
+    """Return the largest factor by which a map of the plane stretches a length."""
+    return float(np.linalg.norm(np.array([[place[0], place[2]], [place[1], place[3]]]), 2))
+
+
+def _text(outline: Outline, changed: Mapping[int, Spline], accuracy: Mapping[int, float]) -> tuple[str, float]:
+    """Return the shortest path data of an outline, and how far rounding moves it."""
+    allowed = [accuracy.get(i, 0.0) if i >= 0 else math.inf for i in outline.splines]
+    least = min(allowed, default=0.0)
+    if 0 < least < math.inf:
+        digits = digits_for(least)
+        for more in range(3):  # an arc may need a digit or two more than a point
+            text, worst = _written(outline, changed, Encoder(digits + more))
+            if all(w <= a for w, a in zip(worst, allowed, strict=True)):
+                return text, max(worst, default=0.0)
+    text, worst = _written(outline, changed, Encoder(None))
+    return text, max(worst, default=0.0)
+
+
+def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -> tuple[str, list[float]]:
+    """Return the path data of an outline, and how far rounding moves each subpath."""
+    text, pen = "", Pen((0, 0), "", None, "")
+    worst = []
+    for subpath, i in zip(outline.subpaths, outline.splines, strict=True):
+        way, off = subpath_of(changed[i], subpath.closed) if i in changed else (subpath, 0.0)
+        more, pen = encoder.subpath(way, pen, first=not text)
+        worst.append(off if encoder.digits is None else off + moved(way, encoder))
+        text = joined(text, more)
+    return text, worst
+
+
+def subpath_of(spline: Spline, closed: bool) -> tuple[Subpath, float]:
+    """Return a curve as a subpath, and how far that is from it; pieces that are straight lines become lines."""
+    nets, off = pieces_of(spline, "the new spline", NEAR)
+    if (nets[1:, 0] != nets[:-1, -1]).any():
+        raise FileError("the new spline has a jump; expected a curve without one, for one subpath")
+    path = Subpath(_point(nets[0, 0]))
+    for net in nets:
+        if is_straight(net):
+            path.line(_point(net[-1]))
+        else:
+            path.segments.append(tuple(_point(p) for p in net[1:]))
+    if closed:
+        path.close()
+    return path, off
+
+
+def is_straight(net: Array) -> bool:
+    """Tell whether a piece is a line run through at even speed, to the last bit or as good as that."""
+    n = len(net) - 1
+    share = np.arange(n + 1)[:, None] / n
+    even = (1 - share) * net[0] + share * net[-1]
+    return bool(np.abs(net - even).max() <= 4 * np.finfo(float).eps * np.abs(net).max())
+
+
+def _point(p: Array) -> tuple[float, float]:
+    return float(p[0]), float(p[1])
