@@ -99,7 +99,7 @@ def check_the_first_block(names, place):
     u = np.linspace(0, 1, 50)
     np.testing.assert_allclose(finer(u), c(u), atol=1e-14)
     assert finer.space.multiplicity(0.5) == 2
-    assert kw.remove(finer, [0.25, 0.5, 0.5], tolerance=1e-12).bound <= 1e-14
+    assert kw.remove(finer, [0.25, 0.5, 0.5], tolerance=1e-12).bound <= 1e-13
     assert [names[part].space.domain for part in ("left", "right")] == [(0, 0.3), (0.3, 1)]
     assert names["nets"].shape == (3, 4, 2)
     assert small.bound <= 2

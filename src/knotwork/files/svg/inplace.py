@@ -74,9 +74,8 @@ class Drawing:
                 continue
             if outline.span is None:
                 if any(i in changed for i in outline.splines):
-                    raise FileError(
-                        f"line {outline.element.line}: the data of <{outline.element.tag}> cannot be replaced"
-                    )
+                    where = f"line {outline.element.line}, <{outline.element.tag}>"
+                    raise FileError(f"{where}: its outline does not stand there as path data, so it cannot be replaced")
                 continue
             text, bound = _text(outline, changed, accuracy)
             a, b = outline.span
