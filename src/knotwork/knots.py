@@ -23,7 +23,7 @@ def sorted_knots(knots: Any, what: str = "knots") -> Array:
         require_finite(t, what, KnotError)
         i = int(np.argmax(t[1:] < t[:-1]))
         raise KnotError(f"{what}[{i}] = {t[i]} is above {what}[{i + 1}] = {t[i + 1]}; expected nondecreasing knots")
-    if t.dtype != object and len(t) and not math.isfinite(t.item(-1) - t.item(0)):
+    if len(t) and not t.dtype.hasobject and not math.isfinite(t.item(-1) - t.item(0)):
         raise KnotError(f"{what} reach from {t[0]} to {t[-1]}: the difference overflows float64")
     return t
 
@@ -50,8 +50,10 @@ def in_order(t: Array) -> bool:
 
 def distinct(knots: Array) -> tuple[Array, Array]:
     """Return the distinct values of sorted knots and the multiplicity of each."""
-    starts = np.flatnonzero(np.append(True, knots[1:] != knots[:-1])) if len(knots) else np.zeros(0, int)
-    return knots[starts], np.diff(np.append(starts, len(knots)))
+    differs = np.ones(len(knots) + 1, bool)
+    differs[1:-1] = knots[1:] != knots[:-1]
+    edges = differs.nonzero()[0]
+    return knots[edges[:-1]], edges[1:] - edges[:-1]
 
 
 def require_multiplicity(knots: Array, degree: int) -> None:

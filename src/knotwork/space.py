@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from typing import Any, Self
@@ -24,6 +25,11 @@ from knotwork.unrolled import Unrolled, reach, require_apart
 from knotwork.value import Frozen
 
 _set = object.__setattr__
+
+#: knots of a space that is kept for those who ask for the same again: longer ones are checked as fast as they are found
+SHORT = 64
+#: how many spaces are kept
+KEPT = 256
 
 
 class SplineSpace(Frozen):
@@ -152,7 +158,7 @@ class SplineSpace(Frozen):
     @property
     def exact(self) -> bool:
         """Whether the knots are exact numbers (dtype object) and not floats."""
-        return self.knots.dtype == object
+        return self.knots.dtype.hasobject
 
     @property
     def nodes(self) -> Array:
@@ -170,7 +176,7 @@ class SplineSpace(Frozen):
         t = self.knots
         if self.periodic and x == t[-1]:
             x = t[0]
-        return int(np.searchsorted(t, x, "right") - np.searchsorted(t, x, "left"))
+        return int(t.searchsorted(x, "right") - t.searchsorted(x))
 
     @property
     def joints(self) -> tuple[Array, Array]:
@@ -374,6 +380,19 @@ class SplineSpace(Frozen):
         if self.exact:
             return self
         return SplineSpace.trusted(self.degree, exact(self.knots, "knots", KnotError), self.periodic)
+
+
+def checked_space(degree: int, knots: Array, periodic: bool) -> SplineSpace:
+    """Return the space over an array of knots; a short one that was checked before is not checked again."""
+    if knots.size <= SHORT and knots.ndim == 1 and knots.dtype.char == "d":
+        return _checked(degree, knots.tobytes(), bool(periodic))
+    return SplineSpace(degree, knots, periodic=periodic)
+
+
+@functools.lru_cache(KEPT)
+def _checked(degree: int, knots: bytes, periodic: bool) -> SplineSpace:
+    """Return the space over float64 knots; as values do not change, all who ask for it share one."""
+    return SplineSpace(degree, np.frombuffer(knots), periodic=periodic)
 
 
 def require_degree(degree: Any) -> int:

@@ -11,7 +11,7 @@ from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, numbers, 
 from knotwork.calculus import antiderivative, derivative
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import on_grid, parameters, quotient_rule, scattered
-from knotwork.space import SplineSpace, require_degree
+from knotwork.space import SplineSpace, checked_space, require_degree
 from knotwork.value import Frozen
 
 _set = object.__setattr__
@@ -51,18 +51,18 @@ class Spline(Frozen):
     _points: Array | None
 
     def __init__(self, spaces: SplineSpace | Sequence[SplineSpace], coefficients: Any, rational: bool = False) -> None:
-        self._check(spaces, coefficients, rational, "coefficients")
-
-    def _check(self, spaces: Any, coefficients: Any, rational: bool, what: str) -> None:
-        """Fill in what was given after checking it; `what` the user calls the coefficients."""
         spaces = (spaces,) if isinstance(spaces, SplineSpace) else spaces
         spaces = tuple(spaces) if isinstance(spaces, list | tuple) else ()
         if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
             raise KnotError(f"spaces {spaces!r} given; expected one SplineSpace a parameter")
+        self._check(spaces, coefficients, rational, "coefficients")
+
+    def _check(self, spaces: tuple[SplineSpace, ...], coefficients: Any, rational: bool, what: str) -> None:
+        """Fill in coefficients after checking that they fit the spaces; `what` the user calls them."""
         given = numbers(coefficients, what, PointError, copy=True)
-        counts = tuple(space.dimension for space in spaces)
+        counts = [space.dimension for space in spaces]
         k = len(counts)
-        if given.ndim not in (k, k + 1) or given.shape[:k] != counts:
+        if not k <= given.ndim <= k + 1 or [*given.shape[:k]] != counts:
             wanted = ", ".join(map(str, counts))
             raise PointError(
                 f"{what} of shape {given.shape} given; the spaces of dimension {wanted} take shape "
@@ -75,8 +75,8 @@ class Spline(Frozen):
             if given.ndim == k or given.dtype.kind == "c":
                 raise PointError("a rational spline takes real homogeneous coordinates: the last one is the weight")
             _require_positive(given[..., -1])
-        if given.dtype == object or any(space.exact for space in spaces):
-            given = given if given.dtype == object else exact(given, what, PointError)
+        if given.dtype.hasobject or any(space.exact for space in spaces):
+            given = given if given.dtype.hasobject else exact(given, what, PointError)
             spaces = tuple(space.in_exact_arithmetic() for space in spaces)
         self._fill(spaces, given, bool(rational))
 
@@ -447,7 +447,7 @@ def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> Sp
     t = numbers(knots, "knots", KnotError)
     if t.ndim == 1 and len(t) != count + extra:
         raise KnotError(f"{len(t)} knots given; {count} {what} of degree {degree} take {count + extra}")
-    return SplineSpace(degree, t, periodic=periodic)
+    return checked_space(degree, t, periodic)
 
 
 def _assemble(spaces: tuple[SplineSpace, ...], P: Array, weights: Any) -> Spline:

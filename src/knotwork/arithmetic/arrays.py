@@ -19,6 +19,11 @@ from knotwork.errors import KnotworkError, SizeError
 
 Array = NDArray[Any]
 
+# glibc takes an array larger than any that was freed so far from the system, and gives it back at once: each page is a
+# fault again, which takes longer than most work here. Once one of nearly 32 MiB was freed, none of whose pages need be
+# touched, it keeps up to twice as much for those to come. Elsewhere this does nothing.
+np.empty((1 << 25) - (1 << 13), np.uint8)
+
 _FLOATS = {np.dtype(t) for t in (np.float64, np.float32, np.complex128)}
 _KEPT = {*_FLOATS, np.dtype(object)}
 
@@ -120,7 +125,7 @@ def exact_number(x: Any, what: str, error: type[KnotworkError]) -> Any:
 
 def all_finite(array: Array) -> bool:
     """Tell whether no element is NaN or infinite; exact numbers are finite unless they say otherwise."""
-    if array.dtype == object:
+    if array.dtype.hasobject:
         return all(x == x and abs(x) != float("inf") for x in array.reshape(-1).tolist())
     return bool(np.count_nonzero(np.isfinite(array)) == array.size)
 

@@ -46,7 +46,7 @@ KERNELS: list[Kernel] = []
 #: what is put around a function, to count or record its calls
 Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-_OBJECT = np.dtype(object)
+_ARRAY, _OBJECT = np.ndarray, np.dtype(object)
 _wraps: ContextVar[dict[str, Wrap] | None] = ContextVar("wraps", default=None)
 _lock = threading.RLock()
 _spent = 0.0
@@ -85,9 +85,14 @@ class Kernel:
         if compiled is None:
             return self._first_calls(args)
         for a in args:
-            if type(a) is np.ndarray and a.dtype is _OBJECT:
+            if type(a) is _ARRAY and a.dtype is _OBJECT:
                 return self._over_objects(*args)
         return compiled(*args)
+
+    @property
+    def loaded(self) -> bool:
+        """Whether calls over floats run compiled code now."""
+        return self._compiled is not None and mode != "never"
 
     def variant(self, **names: Kernel) -> Kernel:
         """Return the same source with the given names bound to other kernels, in the kernels it calls too."""

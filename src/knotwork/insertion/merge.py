@@ -18,6 +18,8 @@ from knotwork.linear.banded import combination, long_sum, short_sum
 BLOCK = 64
 #: curves of a net to which a row is applied at a time
 TILE = 8
+#: rows that are copied as arrays where there are more: fewer are copied by the loop over all (measured, 2026)
+LONG = 64
 
 
 @kernel
@@ -152,7 +154,7 @@ def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int)
 
     P is (A, len, B). Raises if a knot occurs more than n + 1 times.
     """
-    A, B = P.shape[0], P.shape[2]
+    A, B, m = P.shape[0], P.shape[2], len(W)
     T, out = np.empty(rows + n + 1, U.dtype), empty((A, rows, B), P.dtype)
     D = extent(B)
 
@@ -166,12 +168,25 @@ def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int)
         refine_net(U, W, stop, n, lo, P[a:b], out[a:b], start, new, E, D)
 
     if A == 1:  # contiguous parts either way
-        in_parts(curve, rows, out.size)
+        a, b = _near(U, W, stop, n, lo, rows)
+        T[:a], T[b + n + 1 :] = U[lo : lo + a], U[lo + b + n + 1 - m : lo + rows + n + 1 - m]
+        out[:, :a], out[:, b:] = P[:, lo : lo + a], P[:, lo + b - m : lo + rows - m]
+        in_parts(lambda start, end: curve(a + start, a + end), b - a, (b - a) * B)
     else:
         merge(U, W, T, lo)
         require_multiplicity(T, n)
         in_parts(net, A, out.size)
     return T, out
+
+
+def _near(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[int, int]:
+    """Return which of the rows from `lo` on to compute: outside them there is no new knot, and points are copies."""
+    if not len(W):
+        return rows, rows
+    first, last = U[:stop].searchsorted(W[[0, -1]], "right").tolist()
+    a = min(max(first - n - 1 - lo, 0), rows)
+    b = min(max(last + len(W) - lo, a), rows)
+    return (a, b) if a + rows - b > LONG else (0, rows)
 
 
 def rows_of_matrix(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[Array, Array, Array]:

@@ -38,11 +38,20 @@ def split(spline: Spline, u: Any, axis: int = 0) -> tuple[Spline, Spline]:
         If u is not strictly inside the domain.
     """
     axis = spline.axis(axis)
-    a, b = spline.spaces[axis].domain
-    x = _inside(spline.spaces[axis], u)
+    space = spline.spaces[axis]
+    a, b = space.domain
+    x = _inside(space, u)
     if not a < x < b:
         raise ParameterError(f"split at {u}: expected a parameter strictly inside the domain [{a}, {b}]")
-    return _restrict(spline, axis, a, x, keep_start=True), _restrict(spline, axis, x, b, keep_end=True)
+    opened, P = _opened(space, spline.coefficients, axis)
+    n, everything = space.degree, (0, len(opened.knots))
+    full, some = ((a, x, b), _range(opened, a, b)) if space.periodic else ((x,), everything)
+    T, W = _with_full(opened, as_blocks(P, axis), full, *some)
+    k = int(T.searchsorted(x))
+    return (
+        spline.with_axis(axis, SplineSpace.trusted(n, T[: k + n + 1].copy()), along(W[:, :k].copy(), P, axis)),
+        spline.with_axis(axis, SplineSpace.trusted(n, T[k:].copy()), along(W[:, k:].copy(), P, axis)),
+    )
 
 
 def trim(spline: Spline, a: Any, b: Any, axis: int = 0) -> Spline:
@@ -107,8 +116,8 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     k = len(spline.spaces)
     nets, breaks = spline.coefficients, []
     for axis, space in enumerate(spline.spaces):
-        breaks.append(space.breaks)
-        nets = _in_pieces(nets, axis, space)
+        x, nets = _in_pieces(nets, axis, space)
+        breaks.append(x)
     counts = [n for x, space in zip(breaks, spline.spaces, strict=True) for n in (len(x) - 1, space.order)]
     split_axes = nets.reshape(*counts, *nets.shape[k:])
     order = [*range(0, 2 * k, 2), *range(1, 2 * k, 2), *range(2 * k, split_axes.ndim)]
@@ -185,6 +194,8 @@ def from_bezier(nets: Any, breaks: Any, rational: bool | None = None) -> Spline:
 
 def _inside(space: SplineSpace, u: Any) -> Any:
     """Return one parameter value in the arithmetic of the space, or raise if it is outside the domain."""
+    if isinstance(u, float) and not space.exact and space.domain[0] <= u <= space.domain[1]:
+        return u
     try:
         x = space.inside(u)
     except KnotError as exc:
@@ -194,24 +205,26 @@ def _inside(space: SplineSpace, u: Any) -> Any:
     return x[0]
 
 
-def _restrict(spline: Spline, axis: int, a: Any, b: Any, *, keep_start: bool = False, keep_end: bool = False) -> Spline:
-    """Return the part over [a, b], clamped at a and b; an end of the domain may be kept as it is."""
-    space = spline.spaces[axis]
-    start, end = space.domain
-    keep_start &= bool(a == start) and not space.periodic
-    keep_end &= bool(b == end) and not space.periodic
-    space, coefficients = _opened(space, spline.coefficients, axis)
+def _restrict(spline: Spline, axis: int, a: Any, b: Any) -> Spline:
+    """Return the part over [a, b], clamped at a and b."""
+    space, coefficients = _opened(spline.spaces[axis], spline.coefficients, axis)
+    knots, P = _with_full(space, as_blocks(coefficients, axis), (a, b), *_range(space, a, b))
+    return spline.with_axis(axis, SplineSpace.trusted(space.degree, knots), along(P, coefficients, axis))
+
+
+def _range(space: SplineSpace, a: Any, b: Any) -> tuple[int, int]:
+    """Return which knots are in [a, b]: the first of them, and the first after them."""
+    return int(space.knots.searchsorted(a)), int(space.knots.searchsorted(b, "right"))
+
+
+def _with_full(space: SplineSpace, P: Array, full: tuple[Any, ...], first: int, end: int) -> tuple[Array, Array]:
+    """Return the knots first … end - 1, and their points, after each of the knots `full` became as many as the order.
+
+    P and the points are (A, len, B).
+    """
     n, t = space.degree, space.knots
-    missing = [
-        np.repeat(np.asarray([x], t.dtype), max(0, n + 1 - space.multiplicity(x)))
-        for x, keep in ((a, keep_start), (b, keep_end))
-        if not keep
-    ]
-    new = np.concatenate(missing) if missing else t[:0]
-    lo = 0 if keep_start else int(np.searchsorted(t, a, "left"))
-    hi = len(new) + (len(t) if keep_end else int(np.searchsorted(t, b, "right")))
-    knots, P = refined(t, new, space.dimension, n, as_blocks(coefficients, axis), lo, hi - n - 1 - lo)
-    return spline.with_axis(axis, SplineSpace.trusted(n, knots), along(P, coefficients, axis))
+    new = np.array([x for x in full for _ in range(n + 1 - space.multiplicity(x))], t.dtype)
+    return refined(t, new, space.dimension, n, P, first, end + len(new) - n - 1 - first)
 
 
 def _opened(space: SplineSpace, P: Array, axis: int) -> tuple[SplineSpace, Array]:
@@ -232,15 +245,12 @@ def _two_turns(spline: Spline, axis: int) -> Spline:
     return spline.with_axis(axis, SplineSpace.trusted(space.degree, knots, True), coefficients)
 
 
-def _in_pieces(P: Array, axis: int, space: SplineSpace) -> Array:
-    """Return coefficients along one axis with every break of the domain of multiplicity degree + 1, clamped."""
+def _in_pieces(P: Array, axis: int, space: SplineSpace) -> tuple[Array, Array]:
+    """Return the breaks, and coefficients along one axis with each of them as often as the order, clamped."""
+    domain = space.domain
     space, P = _opened(space, P, axis)
     n, t = space.degree, space.knots
-    a, b = space.domain
-    values, counts = distinct(t[np.searchsorted(t, a, "left") : np.searchsorted(t, b, "right")])
-    new, first, rows = (
-        np.repeat(values, n + 1 - counts),
-        int(np.searchsorted(t, a, "left")),
-        (len(values) - 1) * (n + 1),
-    )
-    return along(refined(t, new, space.dimension, n, as_blocks(P, axis), first, rows)[1], P, axis)
+    first, end = _range(space, *domain)
+    breaks, counts = distinct(t[first:end])
+    new, rows = np.repeat(breaks, n + 1 - counts), (len(breaks) - 1) * (n + 1)
+    return breaks, along(refined(t, new, space.dimension, n, as_blocks(P, axis), first, rows)[1], P, axis)

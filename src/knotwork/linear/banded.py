@@ -74,12 +74,14 @@ def pack(first, last, E, limit, wraps):
 
 def as_blocks(P: Array, axis: int) -> Array:
     """View C-ordered coefficients as (A, n, B) with the axis in question in the middle."""
-    return P.reshape(math.prod(P.shape[:axis]), P.shape[axis], math.prod(P.shape[axis + 1 :]))
+    shape = P.shape
+    return P.reshape(math.prod(shape[:axis]), shape[axis], math.prod(shape[axis + 1 :]))
 
 
 def along(blocks: Array, like: Array, axis: int) -> Array:
     """Return blocks (A, m, B) as coefficients of the shape of `like`, with m along the axis."""
-    return blocks.reshape(*like.shape[:axis], blocks.shape[1], *like.shape[axis + 1 :])
+    shape = like.shape
+    return blocks.reshape(shape[:axis] + blocks.shape[1:2] + shape[axis + 1 :])
 
 
 class Banded(Frozen):
