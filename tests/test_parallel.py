@@ -19,7 +19,7 @@ U, V = RNG.random((2, 100_000))
 
 JOBS = {
     "many knots into a curve": lambda: kw.insert(CURVE, U),
-    "few knots into a long curve": lambda: kw.insert(CURVE, [0.25, 0.5, 0.5]),
+    "few knots, far apart, into a long curve": lambda: kw.insert(CURVE, [0.1, 0.5, 0.9]),
     "a closed curve": lambda: kw.insert(CLOSED, U),
     "axis 0 of a surface": lambda: kw.insert(SURFACE, U[:300], axis=0),
     "axis 1 of a surface": lambda: kw.insert(SURFACE, U[:300], axis=1),
