@@ -23,7 +23,7 @@ JOBS = {
     "a closed curve": lambda: kw.insert(CLOSED, np.unique(np.floor(90_000 * U) + 0.5) / 90_000),
     "axis 0 of a surface": lambda: kw.insert(SURFACE, U[:300], axis=0),
     "axis 1 of a surface": lambda: kw.insert(SURFACE, U[:300], axis=1),
-    "one row of a net": lambda: kw.insert(kw.surface(CURVE.points[None], (0, 3)), U[:9], axis=1),
+    "one row of a net": lambda: kw.insert(kw.surface(CURVE.points[None], (0, 3)), [0.1, *U[:9], 0.9], axis=1),
     "points of a curve": lambda: CURVE(U),
     "derivatives of a curve": lambda: CURVE.derivatives(U, 2),
     "points of a surface": lambda: SURFACE(U, V),
