@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from types import CodeType, FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -68,9 +68,10 @@ class Kernel:
     `variant` gives the same text with some of the kernels it calls replaced by others.
     """
 
-    def __init__(self, source: FunctionType, names: dict[str, Kernel] | None = None) -> None:
+    def __init__(self, source: FunctionType, names: dict[str, Kernel] | None = None, inline: bool = True) -> None:
         functools.update_wrapper(self, source)
         self.source = source
+        self.options = {**OPTIONS, "forceinline": inline}
         self.names = names or {}
         self._variants: dict[frozenset[tuple[str, Kernel]], Kernel] = {}
         self._compiled: Callable[..., Any] | None = None
@@ -99,7 +100,7 @@ class Kernel:
         key = frozenset(names.items())
         if key not in self._variants:
             below = {name: callee.variant(**names) for name, callee in self._callees() if callee._calls(names)}
-            self._variants[key] = Kernel(self.source, {**self.names, **below, **names})
+            self._variants[key] = Kernel(self.source, {**self.names, **below, **names}, self.options["forceinline"])
         return self._variants[key]
 
     def _calls(self, names: dict[str, Kernel]) -> bool:
@@ -161,7 +162,7 @@ class Kernel:
             with _lock:
                 if self._compiled is None:
                     bound = self._bound({name: callee.compiled for name, callee in self._callees()})
-                    self._compiled = _compile(bound, self.digest)
+                    self._compiled = _compile(bound, self.digest, self.options)
         return self._compiled
 
     @functools.cached_property
@@ -170,7 +171,7 @@ class Kernel:
         import hashlib
 
         # Numba's cache names the module; its own variable makes every index checked
-        how = (OPTIONS, self.source.__module__, os.environ.get("NUMBA_BOUNDSCHECK", ""))
+        how = (self.options, self.source.__module__, os.environ.get("NUMBA_BOUNDSCHECK", ""))
         hasher = hashlib.sha256(repr(how).encode())
         _hash_code(hasher, self.source.__code__)
         hasher.update(repr(self.source.__defaults__).encode())
@@ -183,10 +184,20 @@ class Kernel:
         return hasher.hexdigest()[:16]
 
 
-def kernel(source: Callable[..., Any]) -> Kernel:
-    """Mark a plain function over arrays, scalars and loops as an algorithm with one source."""
+@overload
+def kernel(source: Callable[..., Any]) -> Kernel: ...
+@overload
+def kernel(*, inline: bool) -> Callable[[Callable[..., Any]], Kernel]: ...
+def kernel(source: Callable[..., Any] | None = None, *, inline: bool = True) -> Any:
+    """Mark a plain function over arrays, scalars and loops as an algorithm with one source.
+
+    With ``inline=False`` its code is not copied into each kernel that calls it: for what is long and called at many
+    places, as in a search, where copies of copies would take minutes to compile.
+    """
+    if source is None:
+        return functools.partial(kernel, inline=inline)
     assert isinstance(source, FunctionType)
-    return Kernel(source)
+    return Kernel(source, inline=inline)
 
 
 @contextmanager
@@ -226,12 +237,16 @@ def cache_directory() -> Path:
     return (Path(base) if base else Path.home() / ".cache") / "knotwork"
 
 
-def _compile(bound: FunctionType, digest: str) -> Callable[..., Any]:
+def _compile(bound: FunctionType, digest: str, options: dict[str, Any]) -> Callable[..., Any]:
     """Compile, with a disk cache in a directory of this very source; without one if it is not writable."""
     import numba
 
     def dispatcher() -> Any:
-        return numba.njit(**OPTIONS)(bound)
+        result: Any = numba.njit(**options)(bound)
+        choose = result.get_call_template
+        # a literal among the arguments is a number like others; Numba would compile the kernel anew for each
+        result.get_call_template = lambda args, kws: choose(tuple(map(numba.types.unliteral, args)), kws)
+        return result
 
     cached, previous = dispatcher(), numba.config.CACHE_DIR
     try:

@@ -1,0 +1,121 @@
+"""Longest pieces one after the other, by galloping; where a piece alone fails, together with those still open."""
+
+from __future__ import annotations
+
+from knotwork.arithmetic.kernel import kernel
+from knotwork.removal.shapes.piece import by_length, fitted_piece
+from knotwork.removal.shapes.residuals import FAIR
+from knotwork.removal.shapes.window import TARGET, copied, fitted_window
+
+#: a piece that fails by more than this is not helped by its neighbours
+HELPED = 3.0
+#: samples tried for the very first piece
+FIRST = 16
+
+
+@kernel
+def kept(G, S, k0, k1, ja, jb, room, slot):  # type: ignore[no-untyped-def]
+    """Keep pieces k0 … k1 and the parameters of samples ja … jb in a slot of the working space."""
+    copied(G, room.pieces[slot], k0, k1 - k0 + 1, 0, room.D)
+    for j in range(ja, jb + 1):
+        room.u[slot, j - ja] = S.u[j]
+
+
+@kernel
+def restored(G, S, k0, k1, ja, jb, room, slot):  # type: ignore[no-untyped-def]
+    """Bring back what was kept."""
+    copied(room.pieces[slot], G, 0, k1 - k0 + 1, k0, room.D)
+    for j in range(ja, jb + 1):
+        S.u[j] = room.u[slot, j - ja]
+
+
+@kernel
+def behind(u, j, k):  # type: ignore[no-untyped-def]
+    """Return the last sample that is matched no later than joint k, starting to look at sample j."""
+    while u[j] > k:
+        j -= 1
+    while u[j + 1] <= k:
+        j += 1
+    return j
+
+
+@kernel
+def tried(G, S, start, opened, k, j, low, high, end, room, steps):  # type: ignore[no-untyped-def]
+    """Try piece k up to sample `high`, `low` being the best so far (or its start j); return the largest distance."""
+    D, tied = room.D, 1 if high == end else 0
+    for c in range(len(D)):
+        if k > opened:
+            G[k, 0, c] = G[k - 1, 3, c]
+        if tied:
+            G[k, 3, c] = S.y[end, c]
+    if low > j:
+        j = behind(S.u, j, k)
+        ratio = (S.arc[low] - S.arc[j]) / (S.arc[high] - S.arc[j]) if S.arc[high] > S.arc[j] else 1.0
+        for i in range(j + 1, low + 1):
+            S.u[i] = k + (S.u[i] - k) * ratio
+    by_length(S, j, low + 1, high, k)
+    worst = fitted_piece(G, k, S, j, high, room, tied, steps)
+    if TARGET < worst < HELPED and opened < k:
+        worst = fitted_window(G, opened, k, S, start, high, room, tied, steps, FAIR)
+    return worst
+
+
+@kernel(inline=False)
+def longest(G, S, start, opened, k, j, end, guess, room, steps):  # type: ignore[no-untyped-def]
+    """Make piece k, from sample j on, as long as it can be found, up to `end`; return the sample where it ends.
+
+    Pieces from `opened` on may still change; the first of them begins at sample `start` or just behind. Galloping: a
+    quarter more, then by halves, after a success; fewer after a failure; then bisection.
+    """
+    low, beyond = j, end + 1
+    high = min(j + guess, end)
+    factor = 1.25
+    kept(G, S, opened, k, start, j, room, 1)
+    while True:
+        worst = tried(G, S, start, opened, k, j, low, high, end, room, steps)
+        if worst <= TARGET or high == j + 1:
+            low = high
+            kept(G, S, opened, k, start, low, room, 1)
+        else:
+            beyond = high
+            restored(G, S, opened, k, start, low, room, 1)
+        if low + 1 >= beyond or low == end:
+            return low
+        if low == j:
+            shrink = 0.85 if worst < 1.3 else (0.7 if worst < 2 else 0.5)
+            high = j + max(1, int((beyond - j) * shrink))
+        elif beyond > end:
+            high = min(end, max(low + 1, j + int((low - j) * factor)))
+            factor = 1.5
+        else:
+            high = (low + beyond) // 2
+
+
+@kernel(inline=False)
+def greedy(G, S, last, room, width, steps, most):  # type: ignore[no-untyped-def]
+    """Fit samples 0 … last by pieces, hard samples being joints; return how many there are.
+
+    Given up, with most + 1, when there are more pieces than `most`.
+    """
+    k, j = 0, 0
+    mean = FIRST * 1.0
+    S.u[0] = 0
+    while j < last:
+        end = j + 1
+        while end < last and not S.hard[end]:
+            end += 1
+        start, opened = j, k
+        for c in range(len(room.D)):
+            G[k, 0, c] = S.y[j, c]
+        while j < end:
+            if k == most:
+                return most + 1
+            if k - opened >= width:
+                opened = k - width + 1
+                start = behind(S.u, start, opened)
+            found = longest(G, S, start, opened, k, j, end, max(1, int(mean + 0.5)), room, steps)
+            if found < end:
+                mean += (found - j - mean) / 3
+            j = found
+            k += 1
+    return k

@@ -1,0 +1,255 @@
+"""Distances of a piecewise cubic g from samples of f: matching them again, and the normal equations of their p-norm.
+
+g is an array of nets, shape (pieces, 4, d); its parameter is piece + local parameter. One unit is the tolerance.
+"""
+
+from __future__ import annotations
+
+import math
+
+from knotwork.arithmetic.kernel import kernel
+
+#: a gap that g crosses over a longer way than this has nodes in it, one a unit and at most that many
+LONG = 0.6
+NODES = 6
+#: squares of distances below which a row says nothing about the p-norm, for p = 8 and p = 20
+SLIGHT = 0.03
+SLIGHT_SHARP = 0.3
+#: weight of fairness: second differences of the control points over the length of the polygon
+FAIR = 0.3
+
+
+@kernel
+def bernstein(t, B):  # type: ignore[no-untyped-def]
+    """Write the four cubic Bernstein polynomials at t."""
+    r = 1 - t
+    B[0], B[1], B[2], B[3] = r * r * r, 3 * r * r * t, 3 * r * t * t, t * t * t
+
+
+@kernel
+def row(G, k, at, room, state, half):  # type: ignore[no-untyped-def]
+    """Add the distance room.d, at the Bernstein values room.B of piece k, to the normal equations; return its part of Φ.
+
+    Φ = Σ e^P, P = 2 half, is a sum of squares ρ = e^half. With d = e n the Gauss-Newton row is half e^(half-1) nᵀB:
+    no root and no quotient is left in the equations.
+    """
+    d, B, D, A, b = room.d, room.B, room.D, room.A, room.b
+    q = 0.0
+    for c in range(len(D)):
+        q += d[c] * d[c]
+    q2 = q * q
+    if half == 4:
+        h, slope, phi, slight = 16 * q2, 4 * q2 * q, q2 * q2, q < SLIGHT
+    else:
+        q8 = q2 * q2 * q2 * q2
+        h, slope, phi, slight = 100 * q8, 10 * q8 * q, q8 * q2, q < SLIGHT_SHARP
+    if not slight:
+        for i in range(4):
+            first = (at + i) * len(D)
+            by = h * B[i]
+            for c in range(len(D)):
+                b[state, first + c] += slope * B[i] * d[c]
+            for l in range(i + 1):
+                both = by * B[l]
+                for c in range(len(D)):
+                    v = both * d[c]
+                    for e in range(len(D)):
+                        if l < i or e <= c:
+                            A[state, first + c, (i - l) * len(D) + c - e] += v * d[e]
+    return q, phi
+
+
+@kernel
+def speeds(G, k0, k1, room):  # type: ignore[no-untyped-def]
+    """Bound the speed of each piece of a window: three times the longest difference of control points."""
+    for k in range(k0, k1 + 1):
+        longest = 0.0
+        for i in range(3):
+            square = 0.0
+            for c in range(len(room.D)):
+                difference = G[k, i + 1, c] - G[k, i, c]
+                square += difference * difference
+            longest = max(longest, square)
+        room.speed[k - k0] = 3 * math.sqrt(longest)
+
+
+@kernel
+def fairness(G, k0, k1, room, state, weight):  # type: ignore[no-untyped-def]
+    """Add weight Σ |Δ²c|² / length² to the normal equations; return it."""
+    D, A, b = room.D, room.A, room.b
+    total = 0.0
+    for k in range(k0, k1 + 1):
+        length = 0.0
+        for i in range(3):
+            square = 0.0
+            for c in range(len(D)):
+                square += (G[k, i + 1, c] - G[k, i, c]) * (G[k, i + 1, c] - G[k, i, c])
+            length += math.sqrt(square)
+        if not length * length > 0:
+            continue
+        by = weight / (length * length)
+        for i in range(2):
+            first = (3 * (k - k0) + i) * len(D)
+            for c in range(len(D)):
+                bend = G[k, i, c] - 2 * G[k, i + 1, c] + G[k, i + 2, c]
+                total += by * bend * bend
+                b[state, first + c] += by * bend
+                b[state, first + len(D) + c] -= 2 * by * bend
+                b[state, first + 2 * len(D) + c] += by * bend
+                A[state, first + c, 0] += by
+                A[state, first + len(D) + c, 0] += 4 * by
+                A[state, first + 2 * len(D) + c, 0] += by
+                A[state, first + len(D) + c, len(D)] -= 2 * by
+                A[state, first + 2 * len(D) + c, len(D)] -= 2 * by
+                A[state, first + 2 * len(D) + c, 2 * len(D)] += by
+    return total
+
+
+@kernel
+def node(G, k, t, S, j, along, room):  # type: ignore[no-untyped-def]
+    """Write the distance of g(k + t) from the parabola of gap j to room.d; return how far along the chord its foot is.
+
+    Feet never run back behind `along`.
+    """
+    y, a, d, B, D = S.y, S.a, room.d, room.B, room.D
+    bernstein(t, B)
+    across, chord = 0.0, 0.0
+    for c in range(len(D)):
+        d[c] = B[0] * G[k, 0, c] + B[1] * G[k, 1, c] + B[2] * G[k, 2, c] + B[3] * G[k, 3, c] - y[j, c]
+        step = y[j + 1, c] - y[j, c]
+        across += d[c] * step
+        chord += step * step
+    w = across / chord if chord > 0 else 0.0
+    w = min(max(w, along), 1.0)
+    for c in range(len(D)):
+        d[c] -= w * (y[j + 1, c] - y[j, c]) + 4 * w * (1 - w) * a[j, c]
+    return w
+
+
+@kernel(inline=False)
+def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):  # type: ignore[no-untyped-def]
+    """Write the normal equations of Φ over samples ja+1 … jb, and over nodes of g between them; return Φ and max e.
+
+    The window may begin between samples ja and ja+1, and end between jb-1 and jb.
+    Given up, with an infinite maximum, as soon as Φ is above the limit.
+    """
+    u, y, D = S.u, S.y, room.D
+    d, B = room.d, room.B
+    size = (3 * (k1 - k0) + 4) * len(D)
+    for i in range(size):
+        room.b[state, i] = 0
+        for o in range(4 * len(D)):
+            room.A[state, i, o] = 0
+    speeds(G, k0, k1, room)
+    phi = fairness(G, k0, k1, room, state, fair)
+    worst = 0.0
+    k = k0
+    for j in range(ja, jb):
+        a, b = max(u[j], k0), min(u[j + 1], k1 + 1)
+        last = min(int(b), k1)
+        way = (b - a) * room.speed[k - k0]
+        if last > k:
+            way = (k + 1 - a) * room.speed[k - k0] + (b - last) * room.speed[last - k0]
+            for i in range(k + 1, last):
+                way += room.speed[i - k0]
+        count = min(NODES, 1 + int(way)) if way > LONG else 0
+        along = 0.0
+        for i in range(1, count + 2):
+            at = a + (b - a) * i / (count + 1) if i <= count else b
+            while k < last and k + 1 <= at:
+                if k + 1 < b:
+                    along = node(G, k, 1.0, S, j, along, room)
+                    q, part = row(G, k, 3 * (k - k0), room, state, half)
+                    phi += part
+                    worst = max(worst, q)
+                k += 1
+            if i <= count:
+                along = node(G, k, at - k, S, j, along, room)
+                q, part = row(G, k, 3 * (k - k0), room, state, half)
+                phi += part
+                worst = max(worst, q)
+        if u[j + 1] > b:
+            continue
+        bernstein(b - k, B)
+        for c in range(len(D)):
+            d[c] = B[0] * G[k, 0, c] + B[1] * G[k, 1, c] + B[2] * G[k, 2, c] + B[3] * G[k, 3, c] - y[j + 1, c]
+        q, part = row(G, k, 3 * (k - k0), room, state, half)
+        phi += part
+        worst = max(worst, q)
+        if phi > limit:
+            return phi, math.inf
+    return phi, math.sqrt(worst)
+
+
+@kernel
+def slopes(G, k, t, y, room):  # type: ignore[no-untyped-def]
+    """Return (g - y)·g', |g'|² and (g - y)·g'' at t of piece k."""
+    r = 1 - t
+    toward, speed, bend = 0.0, 0.0, 0.0
+    for c in range(len(room.D)):
+        p0, p1, p2, p3 = G[k, 0, c], G[k, 1, c], G[k, 2, c], G[k, 3, c]
+        a0, a1, a2 = r * p0 + t * p1, r * p1 + t * p2, r * p2 + t * p3
+        b0, b1 = r * a0 + t * a1, r * a1 + t * a2
+        away = r * b0 + t * b1 - y[c]
+        first = 3 * (b1 - b0)
+        second = 6 * (a2 - 2 * a1 + a0)
+        toward += away * first
+        speed += first * first
+        bend += away * second
+    return toward, speed, bend
+
+
+@kernel(inline=False)
+def rematched(G, k0, k1, S, ja, jb, room):  # type: ignore[no-untyped-def]
+    """Move the parameters of samples ja+1 … jb-1 to their feet, by two Newton steps each, and pool those out of order.
+
+    A joint is crossed only if the piece behind it pulls too.
+    """
+    u = S.u
+    disorder = False
+    for j in range(ja + 1, jb):
+        k = min(max(int(u[j]), k0), k1)
+        t = u[j] - k
+        for _ in range(2):
+            toward, speed, bend = slopes(G, k, t, S.y[j], room)
+            below = max(speed + bend, speed / 2)
+            if not below > 0:
+                break
+            t -= min(max(toward / below, -0.5), 0.5)
+            if t > 1:
+                t = 1.0
+                if k < k1:
+                    toward, speed, bend = slopes(G, k + 1, 0.0, S.y[j], room)
+                    if toward < 0:
+                        k, t = k + 1, 0.0
+            elif t < 0:
+                t = 0.0
+                if k > k0:
+                    toward, speed, bend = slopes(G, k - 1, 1.0, S.y[j], room)
+                    if toward > 0:
+                        k, t = k - 1, 1.0
+        u[j] = k + t
+        disorder = disorder or u[j] < u[j - 1]
+    if disorder or u[jb] < u[jb - 1]:
+        pooled(u, ja, jb, max(u[ja], k0), min(u[jb], k1 + 1), room)
+
+
+@kernel
+def pooled(u, ja, jb, least, most, room):  # type: ignore[no-untyped-def]
+    """Pool adjacent violators among the parameters strictly between ja and jb: means over blocks out of order."""
+    mean, count = room.mean, room.count
+    blocks = 0
+    for j in range(ja + 1, jb):
+        m, n = min(max(u[j], least), most), 1
+        while blocks > 0 and mean[blocks - 1] > m:
+            blocks -= 1
+            m = (mean[blocks] * count[blocks] + m * n) / (count[blocks] + n)
+            n += count[blocks]
+        mean[blocks], count[blocks] = m, n
+        blocks += 1
+    j = ja + 1
+    for i in range(blocks):
+        least = min(max(least, mean[i]), most)
+        for _ in range(count[i]):
+            u[j] = least
+            j += 1

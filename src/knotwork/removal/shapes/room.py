@@ -1,0 +1,79 @@
+"""What the search for few segments works on: samples of the curve, and working space. One unit is the tolerance."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
+
+#: pieces fitted together at most
+WINDOW = 9
+
+
+class Samples(NamedTuple):
+    """Places of the curve f, in order; between two of them it is near a parabola."""
+
+    #: parameter on f
+    s: Array
+    #: point, relative to the first one
+    y: Array
+    #: sagitta of the parabola from here to the next sample
+    a: Array
+    #: length of f up to here
+    arc: Array
+    #: whether a joint has to be exactly here
+    hard: Array
+    #: parameter of the matching point of g
+    u: Array
+    #: which fine sample this is
+    fine: Array
+
+
+class Room(NamedTuple):
+    """Working space of the search, used over and over."""
+
+    #: the normal equations of two states, lower band, and their right-hand sides
+    A: Array
+    b: Array
+    #: Cholesky factor and solution
+    L: Array
+    x: Array
+    #: pieces and parameters to go back to: of a step, of a piece, of a repair
+    pieces: Array
+    u: Array
+    #: blocks of pooled parameters: mean, count
+    mean: Array
+    count: Array
+    #: bound on the speed of each piece in a window
+    speed: Array
+    #: difference, value, derivatives, Bernstein values
+    d: Array
+    p: Array
+    B: Array
+    #: least squares of one piece
+    M: Array
+    R: Array
+    #: points of a net of f
+    level: Array
+    #: a tuple as long as a point
+    D: Any
+
+
+def samples(count: int, d: int) -> Samples:
+    """Return space for samples of a curve in d dimensions."""
+    flat = (np.zeros(count), np.zeros(count, np.int8), np.zeros(count), np.zeros(count, np.int64))
+    return Samples(np.zeros(count), np.zeros((count, d)), np.zeros((count, d)), *flat)
+
+
+def room(count: int, d: int, degree: int = 3) -> Room:
+    """Return working space for windows of up to `count` samples in d dimensions."""
+    unknowns, band = (3 * WINDOW + 1) * d, 4 * d
+    return Room(
+        np.zeros((2, unknowns, band)), np.zeros((2, unknowns)), np.zeros((unknowns, band)), np.zeros(unknowns),
+        np.zeros((3, WINDOW, 4, d)), np.zeros((3, count)), np.zeros(count), np.zeros(count, np.int64),
+        np.zeros(WINDOW + 1), np.zeros(d), np.zeros((4, d)), np.zeros(4), np.zeros((3, 3)), np.zeros((3, d)),
+        np.zeros((degree + 1, d + 1)), extent(d),
+    )  # fmt: skip

@@ -1,0 +1,156 @@
+"""Samples of a curve: finely first, then gaps merged where a parabola says the same."""
+
+from __future__ import annotations
+
+import math
+
+from knotwork.arithmetic.kernel import kernel
+
+#: how near the parabola of a gap is to the fine samples in it
+MERGED = 0.03
+#: gaps merged into one at most
+STRIDE = 64
+#: squares of sagitta over chord, above which a gap is not merged
+BENT = 0.02
+#: parts of a Bézier piece: at least, at most
+PARTS = (4, 4096)
+
+
+@kernel
+def parts(net, per, D):  # type: ignore[no-untyped-def]
+    """Return into how many parts a Bézier piece is cut: chords within half a unit, two fine samples each; lines stay.
+
+    `per` holds one over the unit in each component.
+    """
+    n = len(net) - 1
+    largest = 0.0
+    for i in range(n - 1):
+        square = 0.0
+        for c in range(len(D)):
+            bend = (net[i, c] - 2 * net[i + 1, c] + net[i + 2, c]) * per[c]
+            square += bend * bend
+        largest = max(largest, square)
+    if n == 1:
+        return 1
+    count = math.sqrt(n * (n - 1) / 8 * math.sqrt(largest) / 0.5)
+    return 2 * max(PARTS[0], min(PARTS[1], int(count) + 1)) if count < PARTS[1] else 2 * PARTS[1]
+
+
+@kernel
+def point(net, t, room):  # type: ignore[no-untyped-def]
+    """Write the point of a net at t to room.p[0], divided by its weight if it has one (de Casteljau)."""
+    n, width, level, D = len(net) - 1, net.shape[1], room.level, room.D
+    for i in range(n + 1):
+        for e in range(width):
+            level[i, e] = net[i, e]
+    for r in range(n, 0, -1):
+        for i in range(r):
+            for e in range(width):
+                level[i, e] = (1 - t) * level[i, e] + t * level[i + 1, e]
+    for c in range(len(D)):
+        room.p[0, c] = level[0, c] / level[0, width - 1] if width > len(D) else level[0, c]
+
+
+@kernel(inline=False)
+def counted(F, per, D):  # type: ignore[no-untyped-def]
+    """Return how many fine samples a curve has."""
+    count = 1
+    for i in range(len(F)):
+        count += parts(F[i], per, D)
+    return count
+
+
+@kernel(inline=False)
+def finely(F, per, hard, fine, room):  # type: ignore[no-untyped-def]
+    """Write fine samples of a curve, in units of the tolerance from its first point; return the number of the last one.
+
+    hard[i] marks a joint that stays. Samples on top of the one before are left out, but for hard ones.
+    """
+    D, p = room.D, room.p
+    point(F[0], 0.0, room)
+    for c in range(len(D)):
+        p[1, c] = p[0, c]
+        fine.y[0, c] = 0
+    fine.s[0], fine.arc[0], fine.hard[0] = 0, 0, 1
+    j = 0
+    for i in range(len(F)):
+        count = parts(F[i], per, D)
+        for m in range(1, count + 1):
+            point(F[i], m / count, room)
+            square = 0.0
+            for c in range(len(D)):
+                value = (p[0, c] - p[1, c]) * per[c]
+                fine.y[j + 1, c] = value
+                square += (value - fine.y[j, c]) * (value - fine.y[j, c])
+            joint = m == count and (i + 1 == len(F) or hard[i + 1] != 0)
+            if square > 0 or joint:
+                j += 1
+                fine.s[j] = i + m / count
+                fine.arc[j] = fine.arc[j - 1] + math.sqrt(square)
+                fine.hard[j] = 1 if joint else 0
+    return j
+
+
+@kernel
+def parabola(fine, i, stride, d, D):  # type: ignore[no-untyped-def]
+    """Write the sagitta of a parabola through fine samples i, i + stride/2, i + stride; tell whether those between fit."""
+    y, m = fine.y, i + stride // 2
+    chord, foot = 0.0, 0.0
+    for c in range(len(D)):
+        step = y[i + stride, c] - y[i, c]
+        chord += step * step
+        foot += step * (y[m, c] - y[i, c])
+    if not chord > 0:
+        return False
+    w = foot / chord
+    if not 0.1 < w < 0.9:
+        return False
+    square = 0.0
+    for c in range(len(D)):
+        d[c] = (y[m, c] - y[i, c] - w * (y[i + stride, c] - y[i, c])) / (4 * w * (1 - w))
+        square += d[c] * d[c]
+    if square > BENT * chord:
+        return False
+    before = 0.0
+    for j in range(i + 1, i + stride):
+        foot = 0.0
+        for c in range(len(D)):
+            foot += (y[i + stride, c] - y[i, c]) * (y[j, c] - y[i, c])
+        w = foot / chord
+        if not before <= w <= 1:
+            return False
+        before = w
+        square = 0.0
+        for c in range(len(D)):
+            away = y[j, c] - y[i, c] - w * (y[i + stride, c] - y[i, c]) - 4 * w * (1 - w) * d[c]
+            square += away * away
+        if square > MERGED * MERGED:
+            return False
+    return True
+
+
+@kernel(inline=False)
+def merged(fine, last, S, room):  # type: ignore[no-untyped-def]
+    """Write samples: strides of 2, 4, … fine gaps from one to the next, while their parabola fits; return the last one's number.
+
+    Fine samples that are hard, or forced (2), stay.
+    """
+    D, d = room.D, room.d
+    i, j, ahead = 0, 0, 1
+    while True:
+        for c in range(len(D)):
+            S.y[j, c] = fine.y[i, c]
+            S.a[j, c] = 0
+        S.s[j], S.arc[j], S.hard[j], S.fine[j] = fine.s[i], fine.arc[i], 1 if fine.hard[i] == 1 else 0, i
+        if i == last:
+            return j
+        ahead = max(ahead, i + 1)
+        while not fine.hard[ahead]:
+            ahead += 1
+        stride = 1
+        while 2 * stride <= min(STRIDE, ahead - i) and parabola(fine, i, 2 * stride, d, D):
+            stride *= 2
+            for c in range(len(D)):
+                S.a[j, c] = d[c]
+        i += stride
+        j += 1
