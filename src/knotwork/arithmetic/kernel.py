@@ -39,7 +39,7 @@ UNROLLED = 5
 
 #: how Numba compiles: kernels called by kernels are inlined, no rule of arithmetic is relaxed, and as kernels allocate
 #: nothing, no references are counted
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True, "_nrt": False}
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True, "_nrt": False, "no_cfunc_wrapper": True}
 
 KERNELS: list[Kernel] = []
 
@@ -117,7 +117,7 @@ class Kernel:
         if mode == "never":
             with np.errstate(all="ignore"):
                 return self.plain(*args)
-        expected = PER_ELEMENT * sum(a.size for a in arrays)
+        expected = PER_ELEMENT * _elements(args)
         if mode == "always" or "numba" in sys.modules or _spent + expected > LOADING_PAYS:
             return self.compiled(*args)
         start = time.perf_counter()
@@ -182,6 +182,11 @@ class Kernel:
         for name, callee in self._callees():
             hasher.update(f"{name}:{callee.digest};".encode())
         return hasher.hexdigest()[:16]
+
+
+def _elements(args: tuple[Any, ...]) -> int:
+    """Count the elements of arrays, also of those in tuples."""
+    return sum(a.size if isinstance(a, np.ndarray) else _elements(a) for a in args if isinstance(a, np.ndarray | tuple))
 
 
 @overload

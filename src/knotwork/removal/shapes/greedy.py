@@ -40,11 +40,11 @@ def behind(u, j, k):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def tried(G, S, start, opened, k, j, low, high, end, room, steps):  # type: ignore[no-untyped-def]
+def tried(G, S, chain, start, opened, k, j, low, high, end, room, steps):  # type: ignore[no-untyped-def]
     """Try piece k up to sample `high`, `low` being the best so far (or its start j); return the largest distance."""
     D, tied = room.D, 1 if high == end else 0
     for c in range(len(D)):
-        if k > opened:
+        if j > chain:
             G[k, 0, c] = G[k - 1, 3, c]
         if tied:
             G[k, 3, c] = S.y[end, c]
@@ -61,7 +61,7 @@ def tried(G, S, start, opened, k, j, low, high, end, room, steps):  # type: igno
 
 
 @kernel(inline=False)
-def longest(G, S, start, opened, k, j, end, guess, room, steps):  # type: ignore[no-untyped-def]
+def longest(G, S, chain, start, opened, k, j, end, guess, room, steps):  # type: ignore[no-untyped-def]
     """Make piece k, from sample j on, as long as it can be found, up to `end`; return the sample where it ends.
 
     Pieces from `opened` on may still change; the first of them begins at sample `start` or just behind. Galloping: a
@@ -72,7 +72,7 @@ def longest(G, S, start, opened, k, j, end, guess, room, steps):  # type: ignore
     factor = 1.25
     kept(G, S, opened, k, start, j, room, 1)
     while True:
-        worst = tried(G, S, start, opened, k, j, low, high, end, room, steps)
+        worst = tried(G, S, chain, start, opened, k, j, low, high, end, room, steps)
         if worst <= TARGET or high == j + 1:
             low = high
             kept(G, S, opened, k, start, low, room, 1)
@@ -104,7 +104,7 @@ def greedy(G, S, last, room, width, steps, most):  # type: ignore[no-untyped-def
         end = j + 1
         while end < last and not S.hard[end]:
             end += 1
-        start, opened = j, k
+        chain, start, opened = j, j, k
         for c in range(len(room.D)):
             G[k, 0, c] = S.y[j, c]
         while j < end:
@@ -113,7 +113,7 @@ def greedy(G, S, last, room, width, steps, most):  # type: ignore[no-untyped-def
             if k - opened >= width:
                 opened = k - width + 1
                 start = behind(S.u, start, opened)
-            found = longest(G, S, start, opened, k, j, end, max(1, int(mean + 0.5)), room, steps)
+            found = longest(G, S, chain, start, opened, k, j, end, max(1, int(mean + 0.5)), room, steps)
             if found < end:
                 mean += (found - j - mean) / 3
             j = found

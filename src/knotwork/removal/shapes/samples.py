@@ -52,12 +52,15 @@ def point(net, t, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def counted(F, per, D):  # type: ignore[no-untyped-def]
-    """Return how many fine samples a curve has."""
-    count = 1
-    for i in range(len(F)):
-        count += parts(F[i], per, D)
-    return count
+def counted(F, at, per, D):  # type: ignore[no-untyped-def]
+    """Return how many fine samples the curve with most of them has; at[i] is where curve i begins."""
+    most = 0
+    for curve in range(len(at) - 1):
+        count = 1
+        for i in range(at[curve], at[curve + 1]):
+            count += parts(F[i], per, D)
+        most = max(most, count)
+    return most
 
 
 @kernel(inline=False)
@@ -92,7 +95,7 @@ def finely(F, per, hard, fine, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def parabola(fine, i, stride, d, D):  # type: ignore[no-untyped-def]
+def parabola(fine, i, stride, straight, d, D):  # type: ignore[no-untyped-def]
     """Write the sagitta of a parabola through fine samples i, i + stride/2, i + stride; tell whether those between fit."""
     y, m = fine.y, i + stride // 2
     chord, foot = 0.0, 0.0
@@ -126,11 +129,25 @@ def parabola(fine, i, stride, d, D):  # type: ignore[no-untyped-def]
             square += away * away
         if square > MERGED * MERGED:
             return False
+    if straight:  # the parabola has to be near the edges too
+        before = 0.0
+        for j in range(i, i + stride):
+            foot = 0.0
+            for c in range(len(D)):
+                foot += (y[i + stride, c] - y[i, c]) * ((y[j, c] + y[j + 1, c]) / 2 - y[i, c])
+            w = foot / chord
+            square = 0.0
+            for c in range(len(D)):
+                middle = (y[j, c] + y[j + 1, c]) / 2 - y[i, c]
+                away = middle - w * (y[i + stride, c] - y[i, c]) - 4 * w * (1 - w) * d[c]
+                square += away * away
+            if square > MERGED * MERGED:
+                return False
     return True
 
 
 @kernel(inline=False)
-def merged(fine, last, S, room):  # type: ignore[no-untyped-def]
+def merged(fine, last, straight, S, room):  # type: ignore[no-untyped-def]
     """Write samples: strides of 2, 4, … fine gaps from one to the next, while their parabola fits; return the last one's number.
 
     Fine samples that are hard, or forced (2), stay.
@@ -148,7 +165,7 @@ def merged(fine, last, S, room):  # type: ignore[no-untyped-def]
         while not fine.hard[ahead]:
             ahead += 1
         stride = 1
-        while 2 * stride <= min(STRIDE, ahead - i) and parabola(fine, i, 2 * stride, d, D):
+        while 2 * stride <= min(STRIDE, ahead - i) and parabola(fine, i, 2 * stride, straight, d, D):
             stride *= 2
             for c in range(len(D)):
                 S.a[j, c] = d[c]

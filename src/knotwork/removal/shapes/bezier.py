@@ -1,0 +1,241 @@
+"""Few cubic Bézier pieces within a proven distance of shapes, for many curves in one call."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
+from knotwork.errors import ParameterError, PointError
+from knotwork.removal.shapes import certificate, corners
+from knotwork.removal.shapes.room import room, samples
+from knotwork.removal.shapes.samples import counted
+from knotwork.removal.shapes.search import Curves, Effort, Found, Space, shortened
+
+EFFORTS = {
+    "fast": Effort(width=1, steps=16, reach=0, rounds=6),
+    "normal": Effort(width=2, steps=16, reach=0, rounds=6),
+    "best": Effort(width=2, steps=24, reach=3, rounds=6),
+}
+#: a closed curve is opened where it turns most at this many times the tolerance
+SCALE = 4.0
+#: tolerances below this part of the largest coordinate leave every curve as it is
+FINEST = 2.0**-40
+#: pieces for each of those given, where those given are no answer
+ALLOWED = 16
+
+
+class Pieces(NamedTuple):
+    """What `reduce_bezier` finds, all curves one behind the other."""
+
+    #: nets, shape (pieces, 4, width), homogeneous if the curves are
+    nets: Array
+    #: curve i has nets at[i] … at[i + 1] - 1: none, if the given curve itself is the answer
+    at: Array
+    #: the matching paths over the new and the given nets; curve i has nodes path[i] … path[i + 1] - 1
+    u: Array
+    s: Array
+    path: Array
+    #: proven Fréchet distance of each curve; in units of the tolerance if that is one a component
+    bound: Array
+    #: the piece of a closed curve with which the path and the new nets begin
+    start: Array
+
+
+def reduce_bezier(
+    nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, keep: Any = (),
+    effort: str = "normal", rational: bool = False,
+) -> Pieces:  # fmt: skip
+    """Return few cubic pieces within a distance of each curve.
+
+    Parameters
+    ----------
+    nets : ndarray, shape (N, degree + 1, width)
+        Bézier nets of all curves, one behind the other, float64; homogeneous, weights last, if `rational`.
+    at : array_like of int, shape (curves + 1,)
+        Where the nets of each curve begin; the last one is N.
+    tolerance : float or array_like, shape (d,)
+        Largest Fréchet distance, Euclidean; or one a component: then the Euclidean distance of points whose components
+        are divided by them is at most 1.
+    closed : bool or array_like of bool, shape (curves,)
+        Which curves end where they begin. They may start anywhere: see `start`.
+    angle : float, optional
+        Joints where the tangent turns by more than that, in degrees, are corners: they stay exactly. None: there are
+        no corners.
+    keep : array_like of int
+        Nets whose first point stays, exactly, as a joint.
+    effort : {"fast", "normal", "best"}
+    rational : bool
+
+    Returns
+    -------
+    Pieces
+        A curve gets fewer pieces than it has, or none: then it is the answer itself, at bound 0. That is so of cubics
+        and below; rational curves and those of higher degree get as many as they need, or none if no proof was found.
+
+    Raises
+    ------
+    PointError
+        If nets hold NaN or infinity, or weights that are not positive.
+    ParameterError
+        If the tolerance is negative or not finite, or an option is unknown.
+
+    Notes
+    -----
+    Bounded: see `shortened`. Scaling by powers of two and moving the origin exactly change nothing else.
+    """
+    nets, at = np.ascontiguousarray(nets, np.float64), np.ascontiguousarray(at, np.int64)
+    d = nets.shape[2] - rational
+    each = np.ndim(tolerance) == 1
+    unit = np.broadcast_to(np.asarray(tolerance, np.float64), (d,))
+    if effort not in EFFORTS:
+        raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
+    if not np.isfinite(unit).all() or (unit < 0).any():
+        raise ParameterError(f"tolerance {tolerance} given; expected finite numbers from 0 on")
+    if not np.isfinite(nets).all():
+        raise PointError("control points with NaN or infinity given; expected finite numbers")
+    if rational and not (nets[..., -1] > 0).all():
+        raise PointError("weights given that are not positive; expected positive ones")
+    count = len(at) - 1
+    closed = np.ascontiguousarray(np.broadcast_to(np.asarray(closed, bool), (count,)))
+    size = certificate.sizes(nets, rational).max(initial=0.0)
+    exponent = int(np.frexp(size)[1])
+    F = _scaled(nets, exponent, rational)
+    unit = np.ldexp(unit, -exponent)
+    if not (unit >= FINEST).all() or not len(nets):
+        return _nothing(nets, count)
+    unit = np.minimum(unit, 2.0**40)
+    per = 1 / unit
+    F, start = _opened(F, at, per, closed, d)
+    hard = np.zeros(len(F) + count, np.int8)
+    a, b = np.zeros(d), np.zeros(d)
+    if angle is not None:
+        corners.corners(F, at, per, math.cos(math.radians(angle)), hard, a, b)
+    if len(keep):
+        _keep(hard, np.asarray(keep, np.int64), at, start, closed)
+    metric, reach = (1 / unit**2, 1.0) if each else (np.ones(d), float(unit[0]))
+    found = _search(F, at, hard, unit, metric, reach, rational, EFFORTS[effort])
+    own = np.repeat(np.arange(count), found.count)
+    where = np.concatenate([[0], np.cumsum(found.count)])
+    G = found.G[found.room[own] + np.arange(len(own)) - where[own]]
+    sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
+    bound = (np.sqrt(found.square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(d)
+    if not each:
+        bound = np.ldexp(bound, exponent)
+    bad = (found.count > 0) & ~(bound <= (1.0 if each else tolerance))
+    bound[found.count == 0] = 0
+    nodes = int(found.at[-1])
+    result = Pieces(_unscaled(G, exponent, rational), where, found.u[:nodes], found.s[:nodes], found.at, bound, start)
+    return _without(result, bad) if bad.any() else result
+
+
+def _unscaled(G: Array, exponent: int, rational: bool) -> Array:
+    """Undo `_scaled`; the new weights are one."""
+    if not rational:
+        return np.ldexp(G, exponent)
+    return np.concatenate([np.ldexp(G[..., :-1], exponent), G[..., -1:]], axis=2)
+
+
+def _without(pieces: Pieces, bad: Array) -> Pieces:
+    """Return pieces without those of bad curves."""
+    keep, path = (np.repeat(~bad, np.diff(a)) for a in (pieces.at, pieces.path))
+    at, ends = (np.concatenate([[0], np.cumsum(np.where(bad, 0, np.diff(a)))]) for a in (pieces.at, pieces.path))
+    bound = np.where(bad, 0.0, pieces.bound)
+    return Pieces(pieces.nets[keep], at, pieces.u[path], pieces.s[path], ends, bound, pieces.start)
+
+
+def _scaled(nets: Array, exponent: int, rational: bool) -> Array:
+    """Return nets whose points are divided by a power of two; weights go to about one."""
+    if not rational:
+        return np.ldexp(nets, -exponent)
+    nets = np.ldexp(nets, -int(np.frexp(nets[..., -1].max(initial=1.0))[1]))
+    return np.concatenate([np.ldexp(nets[..., :-1], -exponent), nets[..., -1:]], axis=2)
+
+
+def _nothing(nets: Array, count: int) -> Pieces:
+    none = np.zeros(count + 1, np.int64)
+    empty = np.zeros(0)
+    return Pieces(np.zeros((0, 4, nets.shape[2])), none, empty, empty, none, np.zeros(count), none[:count])
+
+
+def _opened(F: Array, at: Array, per: Array, closed: Array, d: int) -> tuple[Array, Array]:
+    """Return nets of closed curves that begin where they turn most, and with which piece that is."""
+    start = np.zeros(len(at) - 1, np.int64)
+    if closed.any():
+        corners.sharpest(F, at, per, closed, SCALE, start, np.zeros(d), np.zeros(d))
+        sizes = np.diff(at)
+        own = np.repeat(np.arange(len(sizes)), sizes)
+        place = np.arange(len(F)) - at[own] + start[own]
+        F = F[at[own] + np.where(place >= sizes[own], place - sizes[own], place)]
+    return F, start
+
+
+def _keep(hard: Array, keep: Array, at: Array, start: Array, closed: Array) -> None:
+    """Mark the first points of some nets."""
+    own = np.searchsorted(at, keep, side="right") - 1
+    place = keep - at[own] - start[own]
+    place = np.where(place < 0, place + np.diff(at)[own], place)
+    hard[at[own] + own + place] = 1
+
+
+def _search(
+    F: Array, at: Array, hard: Array, unit: Array, metric: Array, reach: float, rational: bool, effort: Effort
+) -> Found:
+    """Run the search, with room for what comes out."""
+    q, d, count, sizes = F.shape[1] - 1, len(unit), len(at) - 1, np.diff(at)
+    allowed = ALLOWED * (sizes + 4) if rational or q > 3 else np.maximum(sizes - 1, 0)
+    # how large g is, is not known yet: mostly no larger than f and some tolerances
+    largest = _sizes(F, at, rational)
+    left = np.maximum(reach / _outward(d) - _allowance(metric, 2 * largest + 4 * unit, q, rational), 0)
+    loop = certificate.loop
+    product = certificate.products(3, q) if rational else np.zeros((0, 0))
+    curves = Curves(F, at, hard, unit, 1 / unit, left * left / _outward(d), metric, product, loop(d), loop(F.shape[2]))
+    most = counted(F, at, curves.per, extent(d))
+    most += most // 2 + 64
+    pieces = int(allowed.max(initial=0)) + 2
+    space = Space(
+        samples(most, d), samples(most, d), room(most, d, q), certificate.room_for(q, 3, F.shape[2]),
+        np.zeros((pieces, 4, d)), np.zeros(2 * most), np.zeros(2 * most), np.zeros(most),
+    )  # fmt: skip
+    where = np.concatenate([[0], np.cumsum(allowed)])
+    nodes = 4 * len(F) + 2 * most + 64
+    found = Found(
+        np.zeros((where[-1], 4, F.shape[2])), where, np.zeros(count, np.int64), np.zeros(nodes), np.zeros(nodes),
+        np.zeros(count + 1, np.int64), np.zeros(count), np.zeros(d),
+    )  # fmt: skip
+    done = 0
+    while (done := int(shortened(curves, found, done, space, effort))) < count:
+        more = np.zeros(len(found.u))
+        found = found._replace(u=np.concatenate([found.u, more]), s=np.concatenate([found.s, more]))
+    return found
+
+
+def _outward(d: int) -> float:
+    """Return what a bound is multiplied by, so that rounding cannot make it too small."""
+    return 1 + (d + 6) * 2 * certificate.ROUNDING
+
+
+def _allowance(metric: Array, sizes: Array, q: int, rational: bool) -> Array:
+    """Return what rounding can add to distances by the metric; sizes, shape (curves, d), of both curves together.
+
+    For the proof see `Scaled.allowance`.
+    """
+    factor = (8 * (q + 3) + 16) if rational else (3 * (q + 3) + 4)
+    slack = factor * certificate.ROUNDING * sizes * (1 + 2.0**-40)
+    result: Array = np.sqrt((metric * slack * slack).sum(axis=1)) * (1 + 2.0**-40)
+    return result
+
+
+def _sizes(F: Array, at: Array, rational: bool) -> Array:
+    """Return the largest coordinate of each curve in each component, shape (curves, d)."""
+    points = np.abs(F[..., :-1] / F[..., -1:] if rational else F).max(axis=1)
+    filled = at[1:] > at[:-1]
+    result = np.zeros((len(at) - 1, points.shape[1]))
+    if filled.any():
+        result[filled] = np.maximum.reduceat(points, at[:-1][filled])
+    return result
+
+

@@ -1,0 +1,89 @@
+"""Where a closed curve is best opened, and which of its joints are corners."""
+
+from __future__ import annotations
+
+import math
+
+from knotwork.arithmetic.kernel import kernel
+
+
+#: pieces looked at on each side of a joint, at most
+LOOK = 64
+
+
+@kernel
+def turned(a, b):  # type: ignore[no-untyped-def]
+    """Return the cosine of the angle between two vectors; 1 if one of them is zero."""
+    along, one, other = 0.0, 0.0, 0.0
+    for c in range(len(a)):
+        along += a[c] * b[c]
+        one += a[c] * a[c]
+        other += b[c] * b[c]
+    size = math.sqrt(one * other)
+    return along / size if size > 0 else 1.0
+
+
+@kernel(inline=False)
+def tangent(net, at_end, per, out):  # type: ignore[no-untyped-def]
+    """Write the direction of a net at its start or end: to the nearest control point that is another one."""
+    n = len(net) - 1
+    for m in range(1, n + 1):
+        size = 0.0
+        for c in range(len(out)):
+            step = net[n, c] - net[n - m, c] if at_end else net[m, c] - net[0, c]
+            out[c] = step * per[c]
+            size += out[c] * out[c]
+        if size > 0:
+            break
+
+
+@kernel(inline=False)
+def corners(F, at, per, cosine, hard, a, b):  # type: ignore[no-untyped-def]
+    """Mark joints of curves where the tangent turns by more than an angle of that cosine."""
+    for curve in range(len(at) - 1):
+        lo, hi = at[curve], at[curve + 1]
+        for i in range(lo + 1, hi):
+            tangent(F[i - 1], True, per, a)
+            tangent(F[i], False, per, b)
+            if turned(a, b) < cosine:
+                hard[i + curve] = 1
+
+
+@kernel(inline=False)
+def toward(F, lo, hi, i, step, reach, per, out):  # type: ignore[no-untyped-def]
+    """Write the vector from joint i of a closed curve to a place about `reach` along it, onward or back (step -1)."""
+    D, n = len(out), hi - lo
+    left, j = reach, i
+    for c in range(D):
+        out[c] = 0
+    for _ in range(min(n, LOOK)):
+        k = j if step > 0 else (j - 1 if j > lo else hi - 1)
+        size = 0.0
+        for c in range(D):
+            side = (F[k, F.shape[1] - 1, c] - F[k, 0, c]) * per[c]
+            size += side * side
+        size = math.sqrt(size)
+        part = 1.0 if size <= left else left / size
+        for c in range(D):
+            out[c] += step * part * (F[k, F.shape[1] - 1, c] - F[k, 0, c]) * per[c]
+        left -= size
+        if left <= 0:
+            return
+        j = (j + 1 if j + 1 < hi else lo) if step > 0 else k
+
+
+@kernel(inline=False)
+def sharpest(F, at, per, closed, reach, starts, a, b):  # type: ignore[no-untyped-def]
+    """Write for each closed curve the joint where it turns most, seen at a distance of `reach` units; 0 for open ones."""
+    for curve in range(len(at) - 1):
+        starts[curve] = 0
+        if closed[curve]:
+            lo, hi = at[curve], at[curve + 1]
+            least = 2.0
+            for i in range(lo, hi):
+                toward(F, lo, hi, i, -1, reach, per, a)
+                toward(F, lo, hi, i, 1, reach, per, b)
+                cosine = -turned(a, b)
+                if cosine < least:
+                    least = cosine
+                    starts[curve] = i - lo
