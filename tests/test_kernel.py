@@ -24,6 +24,7 @@ from knotwork.arithmetic import kernel as kernels
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.conversion.oslo import conversion_matrix, converted
 from knotwork.insertion.methods import forms, perspectives
+from knotwork.removal.shapes.bezier import reduce_bezier
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.polyline import reduce_polyline
 
@@ -56,6 +57,15 @@ def same(a, b):
     return np.asarray(a).tobytes() == np.asarray(b).tobytes()
 
 
+def write_back(given, x):
+    """Give what a call has written to an array, or to arrays in a tuple, to the caller."""
+    if isinstance(given, tuple):
+        for a, b in zip(given, x, strict=True):
+            write_back(a, b)
+    elif isinstance(given, np.ndarray) and given.flags.writeable:
+        given[...] = x
+
+
 @pytest.fixture
 def both(monkeypatch):
     """Let every call of a kernel run plain and compiled on copies of its arguments; return the kernels called."""
@@ -70,10 +80,8 @@ def both(monkeypatch):
         other = self.compiled(*compiled)
         assert (result is None and other is None) or same(result, other), f"{self} returns {result} and {other}"
         for i, (given, x, y) in enumerate(zip(args, plain, compiled, strict=True)):
-            if isinstance(given, np.ndarray):
-                assert same(x, y), f"{self}: argument {i} differs:\n{x}\n{y}"
-                if given.flags.writeable:
-                    given[...] = x
+            assert not isinstance(given, np.ndarray | tuple) or same(x, y), f"{self}: argument {i} differs:\n{x}\n{y}"
+            write_back(given, x)
         called.add(self)
         return result
 
@@ -258,6 +266,9 @@ def test_plain_and_compiled_agree_on_shapes(both):
     for b in (kw.insert(a, [0.3]), kw.curve(line[:7] + 0.01, 1), kw.curve(line[:7], 3, weights=1 + rng.random(7))):
         kw.distance_bound(a, b)
     kw.distance_bound(a, kw.curve(line[:7] + 0.1, 2), [0.5, 0.5])
+    edges = np.stack([line[:-1], line[1:]], axis=1)
+    for effort, closed in (("normal", True), ("best", False)):
+        reduce_bezier(edges, [0, 12, 29], [0.3, 0.2], closed=closed, angle=170.0, keep=[5], effort=effort)
 
 
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone

@@ -39,7 +39,13 @@ UNROLLED = 5
 
 #: how Numba compiles: kernels called by kernels are inlined, no rule of arithmetic is relaxed, and as kernels allocate
 #: nothing, no references are counted
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "forceinline": True, "_nrt": False, "no_cfunc_wrapper": True}
+OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "forceinline": True,
+    "_nrt": False,
+    "no_cfunc_wrapper": True,
+}
 
 KERNELS: list[Kernel] = []
 

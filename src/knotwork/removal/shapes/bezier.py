@@ -118,15 +118,15 @@ def reduce_bezier(
         _keep(hard, np.asarray(keep, np.int64), at, start, closed)
     metric, reach = (1 / unit**2, 1.0) if each else (np.ones(d), float(unit[0]))
     found = _search(F, at, hard, unit, metric, reach, rational, EFFORTS[effort])
-    own = np.repeat(np.arange(count), found.count)
-    where = np.concatenate([[0], np.cumsum(found.count)])
+    own = np.repeat(np.arange(count), found.pieces)
+    where = np.concatenate([[0], np.cumsum(found.pieces)])
     G = found.G[found.room[own] + np.arange(len(own)) - where[own]]
     sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
     bound = (np.sqrt(found.square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(d)
     if not each:
         bound = np.ldexp(bound, exponent)
-    bad = (found.count > 0) & ~(bound <= (1.0 if each else tolerance))
-    bound[found.count == 0] = 0
+    bad = (found.pieces > 0) & ~(bound <= (1.0 if each else tolerance))
+    bound[found.pieces == 0] = 0
     nodes = int(found.at[-1])
     result = Pieces(_unscaled(G, exponent, rational), where, found.u[:nodes], found.s[:nodes], found.at, bound, start)
     return _without(result, bad) if bad.any() else result
@@ -237,5 +237,3 @@ def _sizes(F: Array, at: Array, rational: bool) -> Array:
     if filled.any():
         result[filled] = np.maximum.reduceat(points, at[:-1][filled])
     return result
-
-

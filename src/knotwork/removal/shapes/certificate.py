@@ -60,7 +60,7 @@ class Scaled:
         self.target = reach * reach / self.outward
         self.pair = Pair(
             _scaled(f, self.exponents), _scaled(g, self.exponents), self.metric,
-            _products(g.shape[1] - 1, f.shape[1] - 1) if rational else np.zeros((0, 0)),
+            products(g.shape[1] - 1, f.shape[1] - 1) if rational else np.zeros((0, 0)),
             loop(self.dim), loop(f.shape[2]),
         )  # fmt: skip
         self.room = room_for(f.shape[1] - 1, g.shape[1] - 1, f.shape[2])
@@ -190,5 +190,6 @@ def _exact_products(p: int, q: int) -> Array:
     return table
 
 
-def _products(p: int, q: int) -> Array:
+def products(p: int, q: int) -> Array:
+    """Return C(p, i) C(q, j) / C(p + q, i + j), rounded."""
     return _exact_products(p, q).astype(float)

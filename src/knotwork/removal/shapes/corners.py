@@ -6,13 +6,12 @@ import math
 
 from knotwork.arithmetic.kernel import kernel
 
-
 #: pieces looked at on each side of a joint, at most
 LOOK = 64
 
 
 @kernel
-def turned(a, b):  # type: ignore[no-untyped-def]
+def turned(a, b):
     """Return the cosine of the angle between two vectors; 1 if one of them is zero."""
     along, one, other = 0.0, 0.0, 0.0
     for c in range(len(a)):
@@ -24,7 +23,7 @@ def turned(a, b):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def tangent(net, at_end, per, out):  # type: ignore[no-untyped-def]
+def tangent(net, at_end, per, out):
     """Write the direction of a net at its start or end: to the nearest control point that is another one."""
     n = len(net) - 1
     for m in range(1, n + 1):
@@ -38,7 +37,7 @@ def tangent(net, at_end, per, out):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def corners(F, at, per, cosine, hard, a, b):  # type: ignore[no-untyped-def]
+def corners(F, at, per, cosine, hard, a, b):
     """Mark joints of curves where the tangent turns by more than an angle of that cosine."""
     for curve in range(len(at) - 1):
         lo, hi = at[curve], at[curve + 1]
@@ -50,7 +49,7 @@ def corners(F, at, per, cosine, hard, a, b):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def toward(F, lo, hi, i, step, reach, per, out):  # type: ignore[no-untyped-def]
+def toward(F, lo, hi, i, step, reach, per, out):
     """Write the vector from joint i of a closed curve to a place about `reach` along it, onward or back (step -1)."""
     D, n = len(out), hi - lo
     left, j = reach, i
@@ -73,8 +72,8 @@ def toward(F, lo, hi, i, step, reach, per, out):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def sharpest(F, at, per, closed, reach, starts, a, b):  # type: ignore[no-untyped-def]
-    """Write for each closed curve the joint where it turns most, seen at a distance of `reach` units; 0 for open ones."""
+def sharpest(F, at, per, closed, reach, starts, a, b):
+    """Write for each closed curve the joint where it turns most, seen at `reach` units from it; 0 for open ones."""
     for curve in range(len(at) - 1):
         starts[curve] = 0
         if closed[curve]:

@@ -14,7 +14,7 @@ FIRST = 16
 
 
 @kernel
-def kept(G, S, k0, k1, ja, jb, room, slot):  # type: ignore[no-untyped-def]
+def kept(G, S, k0, k1, ja, jb, room, slot):
     """Keep pieces k0 … k1 and the parameters of samples ja … jb in a slot of the working space."""
     copied(G, room.pieces[slot], k0, k1 - k0 + 1, 0, room.D)
     for j in range(ja, jb + 1):
@@ -22,7 +22,7 @@ def kept(G, S, k0, k1, ja, jb, room, slot):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def restored(G, S, k0, k1, ja, jb, room, slot):  # type: ignore[no-untyped-def]
+def restored(G, S, k0, k1, ja, jb, room, slot):
     """Bring back what was kept."""
     copied(room.pieces[slot], G, 0, k1 - k0 + 1, k0, room.D)
     for j in range(ja, jb + 1):
@@ -30,17 +30,17 @@ def restored(G, S, k0, k1, ja, jb, room, slot):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def behind(u, j, k):  # type: ignore[no-untyped-def]
-    """Return the last sample that is matched no later than joint k, starting to look at sample j."""
+def behind(u, j, k, last):
+    """Return the last sample up to `last` that is matched no later than joint k, starting to look at sample j."""
     while u[j] > k:
         j -= 1
-    while u[j + 1] <= k:
+    while j < last and u[j + 1] <= k:
         j += 1
     return j
 
 
 @kernel
-def tried(G, S, chain, start, opened, k, j, low, high, end, room, steps):  # type: ignore[no-untyped-def]
+def tried(G, S, chain, start, opened, k, j, low, high, end, room, steps):
     """Try piece k up to sample `high`, `low` being the best so far (or its start j); return the largest distance."""
     D, tied = room.D, 1 if high == end else 0
     for c in range(len(D)):
@@ -49,7 +49,7 @@ def tried(G, S, chain, start, opened, k, j, low, high, end, room, steps):  # typ
         if tied:
             G[k, 3, c] = S.y[end, c]
     if low > j:
-        j = behind(S.u, j, k)
+        j = behind(S.u, j, k, low)
         ratio = (S.arc[low] - S.arc[j]) / (S.arc[high] - S.arc[j]) if S.arc[high] > S.arc[j] else 1.0
         for i in range(j + 1, low + 1):
             S.u[i] = k + (S.u[i] - k) * ratio
@@ -61,7 +61,7 @@ def tried(G, S, chain, start, opened, k, j, low, high, end, room, steps):  # typ
 
 
 @kernel(inline=False)
-def longest(G, S, chain, start, opened, k, j, end, guess, room, steps):  # type: ignore[no-untyped-def]
+def longest(G, S, chain, start, opened, k, j, end, guess, room, steps):
     """Make piece k, from sample j on, as long as it can be found, up to `end`; return the sample where it ends.
 
     Pieces from `opened` on may still change; the first of them begins at sample `start` or just behind. Galloping: a
@@ -92,7 +92,7 @@ def longest(G, S, chain, start, opened, k, j, end, guess, room, steps):  # type:
 
 
 @kernel(inline=False)
-def greedy(G, S, last, room, width, steps, most):  # type: ignore[no-untyped-def]
+def greedy(G, S, last, room, width, steps, most):
     """Fit samples 0 … last by pieces, hard samples being joints; return how many there are.
 
     Given up, with most + 1, when there are more pieces than `most`.
@@ -112,7 +112,7 @@ def greedy(G, S, last, room, width, steps, most):  # type: ignore[no-untyped-def
                 return most + 1
             if k - opened >= width:
                 opened = k - width + 1
-                start = behind(S.u, start, opened)
+                start = behind(S.u, start, opened, j)
             found = longest(G, S, chain, start, opened, k, j, end, max(1, int(mean + 0.5)), room, steps)
             if found < end:
                 mean += (found - j - mean) / 3

@@ -113,7 +113,7 @@ def turn(k, count):
     return k if k < count else k - count
 
 
-@kernel
+@kernel(inline=False)
 def difference(pair, room, a, b, x, y):
     """Write the coefficients of g - f on the step from (a, x) to (b, y) to room.E; return how many."""
     k, i = piece_of(b), piece_of(y)
@@ -146,7 +146,7 @@ def largest_square(E, m, metric, D):
     return largest
 
 
-@kernel
+@kernel(inline=False)
 def path_square(pair, room, u, s, widest):
     """Return the largest square on the steps of a path and write the largest coefficient of each component.
 

@@ -13,7 +13,7 @@ RIDGE = 1e-7
 
 
 @kernel
-def by_length(S, ja, first, jb, k):  # type: ignore[no-untyped-def]
+def by_length(S, ja, first, jb, k):
     """Give samples first … jb the parameters of piece k by length of chords; it begins at sample ja."""
     arc, u = S.arc, S.u
     total = arc[jb] - arc[ja]
@@ -23,7 +23,7 @@ def by_length(S, ja, first, jb, k):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def least_squares(G, k, S, ja, jb, room, tied):  # type: ignore[no-untyped-def]
+def least_squares(G, k, S, ja, jb, room, tied):
     """Fit the free points of piece k to samples and middles of gaps at their parameters; P_0 (and P_3 if tied) stay."""
     D, B, M, R, y, a, u = room.D, room.B, room.M, room.R, S.y, S.a, S.u
     n = 3 - tied
@@ -74,7 +74,7 @@ def least_squares(G, k, S, ja, jb, room, tied):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def fitted_piece(G, k, S, ja, jb, room, tied, steps):  # type: ignore[no-untyped-def]
+def fitted_piece(G, k, S, ja, jb, room, tied, steps):
     """Fit piece k to samples ja … jb, whose parameters are a first guess; return the largest distance."""
     worst = math.inf
     for _ in range(3):

@@ -72,7 +72,7 @@ def nearest(c, lo, hi, pair, room):
     return best, least
 
 
-@kernel
+@kernel(inline=False)
 def partner(pair, room, of_g, at, lo, hi):
     """Return a parameter in [lo, hi], in one piece of f, near the point of g at `at`; or of g near f, if not of_g.
 
@@ -103,7 +103,7 @@ def shape_of(C, n, row, pair, room):
     return apart(P[0], P[row], pair.metric, D), apart(P[row], P[row + 1], pair.metric, D)
 
 
-@kernel
+@kernel(inline=False)
 def spread(pair, room, target, a, b, x, y):
     """Write nodes (u, s) inside a step by the interval rule to room.places; tell whether each has a partner.
 
@@ -143,7 +143,7 @@ def spread(pair, room, target, a, b, x, y):
     return True
 
 
-@kernel
+@kernel(inline=False)
 def halved(pair, room, target, b, y, U, S, count):
     """Extend a path of `count` nodes to (b, y), halving steps above the target; return the new count.
 
@@ -179,7 +179,7 @@ def halved(pair, room, target, b, y, U, S, count):
     return -count if failed else count
 
 
-@kernel
+@kernel(inline=False)
 def extended(pair, room, target, b, y, U, S, count):
     """Extend a path of `count` nodes by a step to (b, y) inside one piece of each curve; return the new count.
 
@@ -207,7 +207,7 @@ def extended(pair, room, target, b, y, U, S, count):
     return count
 
 
-@kernel
+@kernel(inline=False)
 def refined(pair, room, target, u, s, U, S, failing):
     """Write a finer path to U, S, its steps inside pieces and, where it can be, below the target; return its length.
 

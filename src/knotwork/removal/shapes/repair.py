@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.greedy import behind, kept, restored
+from knotwork.removal.shapes.greedy import kept, restored
 from knotwork.removal.shapes.piece import by_length, fitted_piece
 from knotwork.removal.shapes.residuals import FAIR
-from knotwork.removal.shapes.samples import merged, point
+from knotwork.removal.shapes.samples import point
 from knotwork.removal.shapes.window import TARGET, fitted_window
 
 #: neighbours on each side that are fitted again together with a piece
@@ -16,7 +16,7 @@ FORCED = 2
 
 
 @kernel
-def fine_sample(F, s, per, fine, j, room):  # type: ignore[no-untyped-def]
+def fine_sample(F, s, per, fine, j, room):
     """Write the point of f at s as forced fine sample j; room.p[1] is the origin."""
     i = min(int(s), len(F) - 1)
     point(F[i], s - i, room)
@@ -26,8 +26,8 @@ def fine_sample(F, s, per, fine, j, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def forced(F, per, fine, end, S, last, failing, room):  # type: ignore[no-untyped-def]
-    """Force all fine samples in the gaps that fail, or a new one where there is none; return the number of the last one.
+def forced(F, per, fine, end, S, last, failing, room):
+    """Force all fine samples in gaps that fail, or a new one where there is none; return the number of the last one.
 
     0 if there is no space for them. failing[j] is where gap j fails, or negative.
     """
@@ -59,7 +59,7 @@ def forced(F, per, fine, end, S, last, failing, room):  # type: ignore[no-untype
 
 
 @kernel
-def interpolated(S, last, s0, u0, before):  # type: ignore[no-untyped-def]
+def interpolated(S, last, s0, u0, before):
     """Give the samples parameters by interpolation in the path (s0, u0), which has before + 1 nodes."""
     i = 0
     for j in range(last + 1):
@@ -71,7 +71,7 @@ def interpolated(S, last, s0, u0, before):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def inserted(G, S, last, k, count, room):  # type: ignore[no-untyped-def]
+def inserted(G, S, last, k, count, room):
     """Make place for a piece behind piece k; parameters follow."""
     for i in range(count, k, -1):
         for m in range(4):
@@ -84,7 +84,7 @@ def inserted(G, S, last, k, count, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def split(G, S, last, j, k, count, room, steps):  # type: ignore[no-untyped-def]
+def split(G, S, last, j, k, count, room, steps):
     """Fit two pieces in place of piece k: they meet in a sample in its middle, by length, near sample j."""
     ja, jb = j, j
     while S.u[ja] > k:
@@ -115,7 +115,7 @@ def split(G, S, last, j, k, count, room, steps):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def halved(G, k, room):  # type: ignore[no-untyped-def]
+def halved(G, k, room):
     """Write the two halves of piece k to it and the next one (de Casteljau)."""
     for c in range(len(room.D)):
         p0, p1, p2, p3 = G[k, 0, c], G[k, 1, c], G[k, 2, c], G[k, 3, c]
@@ -127,7 +127,7 @@ def halved(G, k, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def chain(S, last, j, k, reach):  # type: ignore[no-untyped-def]
+def chain(S, last, j, k, reach):
     """Return the pieces k0, k1 up to `reach` away from piece k, which holds sample j, that no hard joint parts from it.
 
     And samples ja, jb at or just outside their ends.
@@ -150,7 +150,7 @@ def chain(S, last, j, k, reach):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def repaired(G, S, last, count, most, places, s0, u0, before, room, steps):  # type: ignore[no-untyped-def]
+def repaired(G, S, last, count, most, places, s0, u0, before, room, steps):
     """Fit the pieces at the first `places` parameters in s0 again, or split them; return how many pieces there are.
 
     Given up, with most + 1, when there are more pieces than `most`. s0 holds the places behind the path of before + 1

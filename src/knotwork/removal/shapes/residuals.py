@@ -20,15 +20,15 @@ FAIR = 0.3
 
 
 @kernel
-def bernstein(t, B):  # type: ignore[no-untyped-def]
+def bernstein(t, B):
     """Write the four cubic Bernstein polynomials at t."""
     r = 1 - t
     B[0], B[1], B[2], B[3] = r * r * r, 3 * r * r * t, 3 * r * t * t, t * t * t
 
 
 @kernel
-def row(G, k, at, room, state, half):  # type: ignore[no-untyped-def]
-    """Add the distance room.d, at the Bernstein values room.B of piece k, to the normal equations; return its part of Φ.
+def row(G, k, at, room, state, half):
+    """Add the distance room.d, at Bernstein values room.B of piece k, to the normal equations; return e², its part of Φ.
 
     Φ = Σ e^P, P = 2 half, is a sum of squares ρ = e^half. With d = e n the Gauss-Newton row is half e^(half-1) nᵀB:
     no root and no quotient is left in the equations.
@@ -60,7 +60,7 @@ def row(G, k, at, room, state, half):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def speeds(G, k0, k1, room):  # type: ignore[no-untyped-def]
+def speeds(G, k0, k1, room):
     """Bound the speed of each piece of a window: three times the longest difference of control points."""
     for k in range(k0, k1 + 1):
         longest = 0.0
@@ -74,7 +74,7 @@ def speeds(G, k0, k1, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def fairness(G, k0, k1, room, state, weight):  # type: ignore[no-untyped-def]
+def fairness(G, k0, k1, room, state, weight):
     """Add weight Σ |Δ²c|² / length² to the normal equations; return it."""
     D, A, b = room.D, room.A, room.b
     total = 0.0
@@ -106,7 +106,7 @@ def fairness(G, k0, k1, room, state, weight):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def node(G, k, t, S, j, along, room):  # type: ignore[no-untyped-def]
+def node(G, k, t, S, j, along, room):
     """Write the distance of g(k + t) from the parabola of gap j to room.d; return how far along the chord its foot is.
 
     Feet never run back behind `along`.
@@ -127,7 +127,7 @@ def node(G, k, t, S, j, along, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):  # type: ignore[no-untyped-def]
+def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
     """Write the normal equations of Φ over samples ja+1 … jb, and over nodes of g between them; return Φ and max e.
 
     The window may begin between samples ja and ja+1, and end between jb-1 and jb.
@@ -152,7 +152,7 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):  # type: ign
             way = (k + 1 - a) * room.speed[k - k0] + (b - last) * room.speed[last - k0]
             for i in range(k + 1, last):
                 way += room.speed[i - k0]
-        count = min(NODES, 1 + int(way)) if way > LONG else 0
+        count = 0 if way <= LONG else (NODES if not way < NODES else 1 + int(way))
         along = 0.0
         for i in range(1, count + 2):
             at = a + (b - a) * i / (count + 1) if i <= count else b
@@ -182,7 +182,7 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):  # type: ign
 
 
 @kernel
-def slopes(G, k, t, y, room):  # type: ignore[no-untyped-def]
+def slopes(G, k, t, y, room):
     """Return (g - y)·g', |g'|² and (g - y)·g'' at t of piece k."""
     r = 1 - t
     toward, speed, bend = 0.0, 0.0, 0.0
@@ -200,7 +200,7 @@ def slopes(G, k, t, y, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def rematched(G, k0, k1, S, ja, jb, room):  # type: ignore[no-untyped-def]
+def rematched(G, k0, k1, S, ja, jb, room):
     """Move the parameters of samples ja+1 … jb-1 to their feet, by two Newton steps each, and pool those out of order.
 
     A joint is crossed only if the piece behind it pulls too.
@@ -235,9 +235,9 @@ def rematched(G, k0, k1, S, ja, jb, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def pooled(u, ja, jb, least, most, room):  # type: ignore[no-untyped-def]
+def pooled(u, ja, jb, least, most, room):
     """Pool adjacent violators among the parameters strictly between ja and jb: means over blocks out of order."""
-    mean, count = room.mean, room.count
+    mean, count = room.mean, room.merged
     blocks = 0
     for j in range(ja + 1, jb):
         m, n = min(max(u[j], least), most), 1

@@ -46,7 +46,7 @@ class Room(NamedTuple):
     u: Array
     #: blocks of pooled parameters: mean, count
     mean: Array
-    count: Array
+    merged: Array
     #: bound on the speed of each piece in a window
     speed: Array
     #: difference, value, derivatives, Bernstein values

@@ -17,7 +17,7 @@ PARTS = (4, 4096)
 
 
 @kernel
-def parts(net, per, D):  # type: ignore[no-untyped-def]
+def parts(net, per, D):
     """Return into how many parts a Bézier piece is cut: chords within half a unit, two fine samples each; lines stay.
 
     `per` holds one over the unit in each component.
@@ -37,7 +37,7 @@ def parts(net, per, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def point(net, t, room):  # type: ignore[no-untyped-def]
+def point(net, t, room):
     """Write the point of a net at t to room.p[0], divided by its weight if it has one (de Casteljau)."""
     n, width, level, D = len(net) - 1, net.shape[1], room.level, room.D
     for i in range(n + 1):
@@ -52,7 +52,7 @@ def point(net, t, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def counted(F, at, per, D):  # type: ignore[no-untyped-def]
+def counted(F, at, per, D):
     """Return how many fine samples the curve with most of them has; at[i] is where curve i begins."""
     most = 0
     for curve in range(len(at) - 1):
@@ -64,7 +64,7 @@ def counted(F, at, per, D):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def finely(F, per, hard, fine, room):  # type: ignore[no-untyped-def]
+def finely(F, per, hard, fine, room):
     """Write fine samples of a curve, in units of the tolerance from its first point; return the number of the last one.
 
     hard[i] marks a joint that stays. Samples on top of the one before are left out, but for hard ones.
@@ -95,8 +95,8 @@ def finely(F, per, hard, fine, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def parabola(fine, i, stride, straight, d, D):  # type: ignore[no-untyped-def]
-    """Write the sagitta of a parabola through fine samples i, i + stride/2, i + stride; tell whether those between fit."""
+def parabola(fine, i, stride, straight, d, D):
+    """Write the sagitta of a parabola through fine samples i, i + stride/2, i + stride; tell whether all between fit."""
     y, m = fine.y, i + stride // 2
     chord, foot = 0.0, 0.0
     for c in range(len(D)):
@@ -147,8 +147,8 @@ def parabola(fine, i, stride, straight, d, D):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def merged(fine, last, straight, S, room):  # type: ignore[no-untyped-def]
-    """Write samples: strides of 2, 4, … fine gaps from one to the next, while their parabola fits; return the last one's number.
+def merged(fine, last, straight, S, room):
+    """Write samples 2, 4, … fine gaps apart, as long as their parabola fits; return the number of the last one.
 
     Fine samples that are hard, or forced (2), stay.
     """

@@ -13,7 +13,6 @@ from knotwork.removal.shapes.repair import forced, interpolated, repaired
 from knotwork.removal.shapes.residuals import rematched
 from knotwork.removal.shapes.samples import finely, merged, point
 
-
 #: how often a curve is begun anew, with what was learned about its samples
 ATTEMPTS = 3
 
@@ -56,7 +55,7 @@ class Found(NamedTuple):
     #: nets, where there is room for those of each curve, and how many there are: none, if not fewer than given
     G: Array
     room: Array
-    count: Array
+    pieces: Array
     #: paths, and where each begins
     u: Array
     s: Array
@@ -80,7 +79,7 @@ class Space(NamedTuple):
 
 
 @kernel(inline=False)
-def written(F, G, count, S, last, unit, out, room):  # type: ignore[no-untyped-def]
+def written(F, G, count, S, last, unit, out, room):
     """Write pieces in the units of f; points at hard samples are those of f."""
     D, p = room.D, room.p
     point(F[0], 0.0, room)
@@ -110,7 +109,7 @@ def written(F, G, count, S, last, unit, out, room):  # type: ignore[no-untyped-d
 
 
 @kernel
-def all_rematched(G, count, S, last, room):  # type: ignore[no-untyped-def]
+def all_rematched(G, count, S, last, room):
     """Match all samples again between hard ones."""
     j = 0
     while j < last:
@@ -122,7 +121,7 @@ def all_rematched(G, count, S, last, room):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def certified(F, curve, end, last, count, most, curves, found, first, space, effort):  # type: ignore[no-untyped-def]
+def certified(F, curve, end, last, count, most, curves, found, first, space, effort):
     """Prove pieces near a curve, repairing them where that fails; return three numbers: of pieces, nodes, fine samples.
 
     No pieces: it failed. No nodes: there was no space for the path.
@@ -167,7 +166,7 @@ def certified(F, curve, end, last, count, most, curves, found, first, space, eff
 
 
 @kernel(inline=False)
-def shortened(curves, found, first, space, effort):  # type: ignore[no-untyped-def]
+def shortened(curves, found, first, space, effort):
     """Find few pieces for all curves from number `first` on; return the number of the curve the paths have no room for.
 
     Bounded: at most about log n tries a piece, effort.steps steps a fit, effort.rounds rounds of repair, thrice.
@@ -193,6 +192,6 @@ def shortened(curves, found, first, space, effort):  # type: ignore[no-untyped-d
                 count, nodes, end = certified(F, curve, end, last, count, most, curves, found, at, space, effort)
         if nodes == 0:
             return curve
-        found.count[curve] = count
+        found.pieces[curve] = count
         found.at[curve + 1] = at + (nodes if count > 0 else 0)
     return len(curves.at) - 1

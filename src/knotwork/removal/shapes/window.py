@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.residuals import FAIR, measured, rematched
+from knotwork.removal.shapes.residuals import measured, rematched
 
 #: distance at which a fit is good, what is given up at once, and after the first steps
 TARGET = 0.995
@@ -19,7 +19,7 @@ NEAR = 1.2
 
 
 @kernel
-def copied(source, target, first, count, at, D):  # type: ignore[no-untyped-def]
+def copied(source, target, first, count, at, D):
     """Copy `count` nets from place `first` of one array to place `at` of another."""
     for k in range(count):
         for i in range(4):
@@ -28,7 +28,7 @@ def copied(source, target, first, count, at, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def solved(room, state, lo, hi, damping, D):  # type: ignore[no-untyped-def]
+def solved(room, state, lo, hi, damping, D):
     """Solve (A + damping) x = b for unknowns lo … hi-1 by Cholesky in the band; tell whether it was definite."""
     A, L, x, band = room.A, room.L, room.x, 4 * len(D)
     largest = 0.0
@@ -59,7 +59,7 @@ def solved(room, state, lo, hi, damping, D):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def moved(G, k0, k1, room, lo, hi, D):  # type: ignore[no-untyped-def]
+def moved(G, k0, k1, room, lo, hi, D):
     """Subtract the solution from the free control points of a window."""
     for k in range(k0, k1 + 1):
         for i in range(4):
@@ -70,7 +70,7 @@ def moved(G, k0, k1, room, lo, hi, D):  # type: ignore[no-untyped-def]
 
 
 @kernel(inline=False)
-def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair):  # type: ignore[no-untyped-def]
+def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair):
     """Lower Φ by at most `steps` damped Gauss-Newton steps over pieces k0 … k1; return the largest distance.
 
     The start is fixed, and the end if `tied`.
@@ -108,7 +108,7 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair):  # type: ign
 
 
 @kernel(inline=False)
-def fitted_window(G, k0, k1, S, ja, jb, room, tied, steps, fair):  # type: ignore[no-untyped-def]
+def fitted_window(G, k0, k1, S, ja, jb, room, tied, steps, fair):
     """Fit pieces k0 … k1 together to samples ja … jb, first in the 8-norm, then, when near, in the 20-norm."""
     worst = descended(G, k0, k1, S, ja, jb, room, tied, 4, steps, fair)
     if TARGET < worst < NEAR:
