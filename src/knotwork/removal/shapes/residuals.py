@@ -28,7 +28,7 @@ def bernstein(t, B):
 
 @kernel
 def row(G, k, at, room, state, half):
-    """Add the distance room.d, at Bernstein values room.B of piece k, to the normal equations; return e², its part of Φ.
+    """Add the distance room.d, at Bernstein values room.B of piece k, to the equations; return e² and its part of Φ.
 
     Φ = Σ e^P, P = 2 half, is a sum of squares ρ = e^half. With d = e n the Gauss-Newton row is half e^(half-1) nᵀB:
     no root and no quotient is left in the equations.

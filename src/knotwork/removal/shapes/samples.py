@@ -96,7 +96,7 @@ def finely(F, per, hard, fine, room):
 
 @kernel
 def parabola(fine, i, stride, straight, d, D):
-    """Write the sagitta of a parabola through fine samples i, i + stride/2, i + stride; tell whether all between fit."""
+    """Write the sagitta of the parabola of fine samples i, i + stride/2, i + stride; tell whether the others fit."""
     y, m = fine.y, i + stride // 2
     chord, foot = 0.0, 0.0
     for c in range(len(D)):
