@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
-    from knotwork.removal import Distance, Matching, Reduction, distance_bound, reduce, relative, remove
+    from knotwork.removal import Distance, Matching, Reduction, distance_bound, fit, reduce, relative, remove
     from knotwork.space import SplineSpace
     from knotwork.spline import Spline, curve, surface
 
@@ -40,6 +40,7 @@ __all__ = [
     "diagrams",
     "distance_bound",
     "elevate",
+    "fit",
     "from_bezier",
     "from_pieces",
     "insert",
@@ -69,7 +70,7 @@ _PARTS = {
     "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
     "plotting": ("plot",),
     "progressive": ("blossom", "segment"),
-    "removal": ("Distance", "Matching", "Reduction", "distance_bound", "reduce", "relative", "remove"),
+    "removal": ("Distance", "Matching", "Reduction", "distance_bound", "fit", "reduce", "relative", "remove"),
     "space": ("SplineSpace",),
     "spline": ("Spline", "curve", "surface"),
     "stability": (),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
 
 
 def raised(nets: Array, n: int) -> Array:
@@ -24,3 +26,17 @@ def halves(nets: Array) -> tuple[Array, Array]:
         left[:, k], right[:, count - 1 - k] = nets[:, 0], nets[:, -1]
         nets = nets[:, :-1] / 2 + nets[:, 1:] / 2
     return left, right
+
+
+def joined(nets: Array, t: Array, closed: bool) -> Spline:
+    """Return the curve of joining Bézier pieces over the breaks t; joins have a multiplicity equal to the degree.
+
+    Control point kn + r - 1 is the blossom at n - r times t_k and r times t_{k+1}: point r of piece k. A periodic
+    curve takes r = 1 … n; an open one has point 0 of the first piece before.
+    """
+    n = nets.shape[1] - 1
+    points = nets[:, 1:].reshape(-1, nets.shape[2])
+    if closed:
+        return Spline(SplineSpace(n, np.append(np.repeat(t[:-1], n), t[-1]), periodic=True), points)
+    knots = np.concatenate([t[:1], np.repeat(t, n), t[-1:]])
+    return Spline(SplineSpace(n, knots), np.concatenate([nets[0, :1], points]))

@@ -1,8 +1,9 @@
 """Knot removal and data reduction, with certificates."""
 
 from knotwork.removal.faces import reduce, remove
+from knotwork.removal.fitting import fit
 from knotwork.removal.result import Reduction
 from knotwork.removal.shapes import Distance, Matching, distance_bound
 from knotwork.removal.tolerance import relative
 
-__all__ = ["Distance", "Matching", "Reduction", "distance_bound", "reduce", "relative", "remove"]
+__all__ = ["Distance", "Matching", "Reduction", "distance_bound", "fit", "reduce", "relative", "remove"]

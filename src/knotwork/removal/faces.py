@@ -154,8 +154,8 @@ def reduce(
         raise ParameterError(f"{type(spline).__name__} given; reduce takes a Spline, and fit takes points")
     _require_one_of(distance=(distance, DISTANCES), form=(form, FORMS), effort=(effort, EFFORTS))
     _require_one_of(crossings=(crossings, CROSSINGS), small=(small, SMALL), method=(method, METHODS))
-    if distance == "geometric":  # the one place where the reduction of shapes is called
-        raise ParameterError("distance 'geometric' given; expected 'parametric': shapes are not reduced yet")
+    if distance == "geometric":
+        return _reduced_shape(spline, tolerance, form=form, effort=effort, keep=keep, small=small, progress=progress)
     if form != "spline":
         raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")
     if len(spline.spaces) != 1:
@@ -167,6 +167,18 @@ def reduce(
     candidates: Array = spline.space.removable & ~stay
     result, mask = search(original, candidates, progress)
     return Reduction(result.spline, original.told(result, "reduce"), removed=spline.space.knots[~mask], effort=effort)
+
+
+def _reduced_shape(
+    spline: Spline, tolerance: Any, *, form: str, effort: str, keep: Any, small: str, progress: Progress | None
+) -> Reduction:
+    """Reduce the shape of a curve; the way there at equal parameters is that of `reduce`."""
+    from knotwork.removal.shapes.reducing import reduce_shape
+
+    def parametric(curve: Spline, allowed: Any) -> Reduction:
+        return reduce(curve, allowed, effort=effort, progress=progress)
+
+    return reduce_shape(spline, tolerance, form=form, effort=effort, keep=keep, small=small, parametric=parametric)
 
 
 def _require_one_of(**options: tuple[Any, tuple[Any, ...]]) -> None:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from knotwork.arithmetic.arrays import Array
 from knotwork.spline import Spline
 
 #: called with a fraction from 0 to 1 as the work goes on
@@ -32,8 +31,8 @@ class Reduction:
         No spline of this degree within the tolerance has fewer control points: proven.
     heuristic_lower_bound : int or None
         Fewer are not to be expected.
-    matching : ndarray or None
-        For shapes, the parameters that correspond.
+    matching : Matching or None
+        For shapes, which places on the original (first) and on the result (second) go together: the proof.
     effort : str or None
         How long was searched: "fast", "normal" or "best".
     """
@@ -44,5 +43,5 @@ class Reduction:
     removed: Any = ()
     lower_bound: int | None = None
     heuristic_lower_bound: int | None = None
-    matching: Array | None = None
+    matching: Any = None
     effort: str | None = None

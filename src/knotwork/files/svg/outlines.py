@@ -10,9 +10,8 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.svg.notation import Affine
 from knotwork.files.svg.pathdata import Point, Subpath
-from knotwork.geometry.bezier import raised
+from knotwork.geometry.bezier import joined, raised
 from knotwork.geometry.lengths import increasing
-from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 
@@ -39,21 +38,7 @@ def _curve(path: Subpath, place: Affine) -> Spline | None:
     t = increasing(chord / 2 + polygon / 2, path.closed)
     if not np.isfinite(t[-1]):
         raise FileError("the outline is longer than float64 can say")
-    return _joined(nets, t, path.closed)
-
-
-def _joined(nets: Array, t: Array, closed: bool) -> Spline:
-    """Return the curve of joining Bézier pieces over the breaks t; joins have a multiplicity equal to the degree.
-
-    Control point kn + r - 1 is the blossom at n - r times t_k and r times t_{k+1}: point r of piece k. A periodic
-    curve takes r = 1 … n; an open one has point 0 of the first piece before.
-    """
-    n = nets.shape[1] - 1
-    points = nets[:, 1:].reshape(-1, 2)
-    if closed:
-        return Spline(SplineSpace(n, np.append(np.repeat(t[:-1], n), t[-1]), periodic=True), points)
-    knots = np.concatenate([t[:1], np.repeat(t, n), t[-1:]])
-    return Spline(SplineSpace(n, knots), np.concatenate([nets[0, :1], points]))
+    return joined(nets, t, path.closed)
 
 
 def _going_somewhere(path: Subpath) -> list[tuple[Point, ...]]:
