@@ -171,6 +171,13 @@ def test_plain_and_compiled_agree_on_curves(both, dtype):
 
 
 @battery
+def test_plain_and_compiled_agree_on_lowering(both):
+    rng = np.random.default_rng(7)
+    for periodic in (False, True):
+        kw.lower(kw.curve(rng.standard_normal((9, 2)), periodic=periodic))
+
+
+@battery
 def test_plain_and_compiled_agree_on_surfaces(both):
     rng = np.random.default_rng(3)
     for shape, closed in (((6, 7, 2), (False, False)), ((6, 5, 2), (True, False))):

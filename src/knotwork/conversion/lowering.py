@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, whole
+from knotwork.arithmetic.kernel import kernel
 from knotwork.conversion.certificate import Tolerance
 from knotwork.conversion.face import Conversion, by_least_squares, concluded, measured, solved
 from knotwork.conversion.nesting import breaks_and_copies, common_refinement, embedding, space_over
@@ -139,30 +140,80 @@ def minimax(A: Banded, d: Array) -> Array:
     size = np.abs(r).max()
     if size == 0:
         return c
-    c, r, d = c / size, r / size, d / size
+    c, r = c / size, r / size
     e = 1.1
-    p = q = np.full(len(d), 0.5 / len(d))
+    p, q = np.full((2, len(d)), 0.5 / len(d))
+    weight, y, direction = np.empty(len(d)), np.empty((len(d), 2)), np.empty((3, len(d)))
     for _ in range(STEPS):
-        above, below = e - r, e + r
-        gap = p @ above + q @ below
-        if gap <= GAP * e or min(above.min(), below.min()) <= TOUCHING * e:
+        gap, least = gap_to_best(r, e, p, q)
+        if gap <= GAP * e or least <= TOUCHING * e:
             break
-        weight, lean = p / above + q / below, p / above - q / below
         mean = 0.1 * gap / (2 * len(d))
-        to_p, to_q = mean / above, mean / below
-        u = least_squares(A, weight, np.stack([(to_p - to_q) / weight, lean / weight], axis=1))
+        lack, total = weighted_system(r, e, p, q, mean, weight, y)
+        u = least_squares(A, weight, y)
         Au = A @ u
-        de = ((to_p + to_q).sum() - 1 - lean @ Au[:, 0]) / (weight.sum() - lean @ Au[:, 1])
-        dc, dr = u[:, 0] - de * u[:, 1], de * Au[:, 1] - Au[:, 0]
-        dp, dq = to_p - p - p / above * (de - dr), to_q - q - q / below * (de + dr)
-        step = _until_zero([(above, de - dr), (below, de + dr)])
-        c, r, e = c + step * dc, r + step * dr, e + step * de
-        step = _until_zero([(p, dp), (q, dq)])
-        p, q = p + step * dp, q + step * dq
+        de = rise(lack, total, weight, y, Au)
+        primal, dual = newton(r, e, p, q, mean, Au, de, direction)
+        step = _until_zero(primal)
+        c, e = c + step * (u[:, 0] - de * u[:, 1]), e + step * de
+        r += step * direction[0]
+        step = _until_zero(dual)
+        p += step * direction[1]
+        q += step * direction[2]
     c *= size
     return c
 
 
-def _until_zero(pairs: list[tuple[Array, Array]]) -> float:
-    """Return how far positive x can go along dx, at most 1, and stay positive."""
-    return min(1.0, *(0.95 / max(float((-dx / x).max()), 0.95) for x, dx in pairs))
+@kernel
+def gap_to_best(r, e, p, q):
+    """Return p·(e − r) + q·(e + r), and the least of all e − |r|."""
+    gap, least = 0, e
+    for i in range(len(r)):
+        above, below = e - r[i], e + r[i]
+        gap += p[i] * above + q[i] * below
+        least = min(least, above, below)
+    return gap, least
+
+
+@kernel
+def weighted_system(r, e, p, q, mean, weight, y):
+    """Fill in the least squares whose solutions u give dc = u_0 − de u_1; return what Σ(p + q) lacks, and Σ weight."""
+    lack, total = -1, 0
+    for i in range(len(r)):
+        above, below = e - r[i], e + r[i]
+        to_p, to_q = mean / above, mean / below
+        weight[i] = p[i] / above + q[i] / below
+        y[i, 0] = (to_p - to_q) / weight[i]
+        y[i, 1] = (p[i] / above - q[i] / below) / weight[i]
+        lack += to_p + to_q
+        total += weight[i]
+    return lack, total
+
+
+@kernel
+def rise(lack, total, weight, y, Au):
+    """Return de, with which Σ(p + q) becomes 1."""
+    for i in range(len(weight)):
+        lean = weight[i] * y[i, 1]
+        lack -= lean * Au[i, 0]
+        total -= lean * Au[i, 1]
+    return lack / total
+
+
+@kernel
+def newton(r, e, p, q, mean, Au, de, direction):
+    """Fill in dr, dp and dq; return how fast the fastest of e ± r comes down to zero, and the fastest of p and q."""
+    primal = dual = e - e
+    for i in range(len(r)):
+        above, below, dr = e - r[i], e + r[i], de * Au[i, 1] - Au[i, 0]
+        dp = mean / above - p[i] - p[i] / above * (de - dr)
+        dq = mean / below - q[i] - q[i] / below * (de + dr)
+        direction[0, i], direction[1, i], direction[2, i] = dr, dp, dq
+        primal = max(primal, (dr - de) / above, (-dr - de) / below)
+        dual = max(dual, -dp / p[i], -dq / q[i])
+    return primal, dual
+
+
+def _until_zero(rate: float) -> float:
+    """Return how far to go, at most 1, where something comes down to zero at this rate."""
+    return 0.95 / max(rate, 0.95)

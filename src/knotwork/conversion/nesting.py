@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import kernel
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.insertion.face import insertion_matrix
@@ -88,13 +89,33 @@ def _refinement(space: SplineSpace, finer: SplineSpace) -> Banded:
 
 def product(A: Banded, B: Banded) -> Banded:
     """Return the matrix A·B of which every row has the entries of the rows of B that A combines."""
-    rows, (of_a, of_b) = len(A.first), (A.entries.shape[1], B.entries.shape[1])
-    used = (A.first[:, None] + np.arange(of_a)) % A.columns
-    offset = (B.first[used] - B.first[used[:, :1]]) % B.columns
-    E = np.zeros((rows, min(int(offset.max()) + of_b, B.columns)), np.result_type(A.entries, B.entries))
-    for r in range(of_a):
-        for s in range(of_b):
-            E[np.arange(rows), (offset[:, r] + s) % B.columns] += A.entries[:, r] * B.entries[used[:, r], s]
-    first = B.first[used[:, 0]].copy()
+    width = min(widest(A.first, A.entries, B.first, A.columns, B.columns) + B.entries.shape[1], B.columns)
+    E = np.zeros((len(A.first), width), np.result_type(A.entries, B.entries))
+    multiply(A.first, A.entries, B.first, B.entries, A.columns, B.columns, E)
+    first = B.first[A.first % A.columns]
     wraps = A.wraps or B.wraps
-    return Banded.packed(first, np.full(rows, E.shape[1] - 1), E, B.columns, wraps)
+    return Banded.packed(first, np.full(len(E), width - 1), E, B.columns, wraps)
+
+
+@kernel
+def widest(first, X, other, columns, wrap):
+    """Return how much further to the right, at most, than with its first entry a row begins with another."""
+    most = 0
+    for i in range(len(first)):
+        start = other[first[i] % columns]
+        for r in range(X.shape[1]):
+            most = max(most, (other[(first[i] + r) % columns] - start) % wrap)
+    return most
+
+
+@kernel
+def multiply(first, X, other, Y, columns, wrap, E):
+    """E[i] += Σ_r X[i, r] · Y[first[i] + r], which starts as many columns further as its `other` is than the first."""
+    for i in range(len(first)):
+        start = other[first[i] % columns]
+        for r in range(X.shape[1]):
+            j = (first[i] + r) % columns
+            k = (other[j] - start) % wrap
+            for s in range(Y.shape[1]):
+                E[i, k] = E[i, k] + X[i, r] * Y[j, s]
+                k = k + 1 if k + 1 < wrap else 0
