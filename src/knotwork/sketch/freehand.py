@@ -1,0 +1,112 @@
+"""Curves drawn by hand: a stroke that is not straight becomes a curve with few knots, or a part of one (§7.4, §7.6)."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.removal import reduce as fit  # FIXME
+from knotwork.sketch.knot_replacement import with_change
+from knotwork.sketch.rules import Change
+from knotwork.spline import Spline
+
+#: points of a curve per interval, to find where a path meets it; a person's hand is not exact
+SAMPLES = 16
+
+
+class Meeting(NamedTuple):
+    """Where a path meets a curve."""
+
+    #: the parameter of the curve
+    u: float
+    #: the place on the path: a point's number and the share of the way to the next
+    at: float
+
+
+def fitted(path: Array, tolerance: float, degree: int, closed: bool) -> Spline:
+    """Return a smooth curve with few knots within the tolerance of a path."""
+    return fit(path, tolerance, degree=degree, closed=closed, form="spline", effort="fast").spline
+
+
+def meetings(path: Array, curve: Spline, reach: float) -> list[Meeting]:
+    """Return where a path meets a curve, in the order of the path: crossings, and ends of the path that lie near it."""
+    breaks = np.unique(curve.space.breaks)
+    u = np.unique(np.concatenate([np.linspace(a, b, SAMPLES + 1) for a, b in pairwise(breaks)]))
+    points = curve(u)
+    found = _crossings(path, points)
+    met = [Meeting(float(u[i] + share * (u[i + 1] - u[i])), at) for i, share, at in found]
+    for end in (0, len(path) - 1):
+        away, i, share = _nearest(path[end], points)
+        if away <= reach and not any(abs(m.at - end) < 1 for m in met):
+            met.append(Meeting(float(u[i] + share * (u[i + 1] - u[i])), float(end)))
+    return sorted(met, key=lambda meeting: meeting.at)
+
+
+def _crossings(path: Array, points: Array) -> list[tuple[int, float, float]]:
+    """Return where two polylines cross: the segment and share of `points`, the place on the path."""
+    A, d = path[:-1, None], np.diff(path, axis=0)[:, None]
+    C, e = points[None, :-1], np.diff(points, axis=0)[None]
+    turn = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
+    r = C - A
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (r[..., 0] * e[..., 1] - r[..., 1] * e[..., 0]) / turn
+        share = (r[..., 0] * d[..., 1] - r[..., 1] * d[..., 0]) / turn
+    hit = (turn != 0) & (along >= 0) & (along < 1) & (share >= 0) & (share < 1)
+    return [(int(i), float(share[k, i]), float(k + along[k, i])) for k, i in np.argwhere(hit)]
+
+
+def _nearest(point: Array, points: Array) -> tuple[float, int, float]:
+    """Return how near a polyline comes to a point, and the segment and share of its foot."""
+    e = np.diff(points, axis=0)
+    size = (e * e).sum(axis=1)
+    share = np.clip(((point - points[:-1]) * e).sum(axis=1) / np.where(size > 0, size, 1), 0, 1)
+    away = np.hypot(*(points[:-1] + share[:, None] * e - point).T)
+    i = int(np.argmin(away))
+    return float(away[i]), i, float(share[i])
+
+
+def redrawn(curve: Spline, path: Array, met: list[Meeting], tolerance: float) -> Spline:
+    """Return the curve with what lies between its first and last meeting with the path drawn anew.
+
+    The control points of the new part take the place of those between, its knots go, to scale, between the knots that
+    stay (§7.5.2). So it joins as smoothly as the degree admits, and what lies outside is unchanged to the last bit.
+    """
+    one, two = met[0], met[-1]
+    part = _between(path, one.at, two.at)
+    if one.u > two.u:
+        one, two, part = two, one, part[::-1]
+    nodes = curve.space.nodes
+    count, length = len(nodes), curve.space.domain[1] - curve.space.domain[0]
+    if curve.space.periodic and two.u - one.u > length / 2:  # the shorter way round
+        one, two, part = two, Meeting(one.u + length, one.at), part[::-1]
+    first, last = _outside(nodes, one.u, two.u, count, length if curve.space.periodic else 0.0)
+    new = fitted(part, tolerance, curve.space.degree, closed=False)
+    a, b = new.space.domain
+    shares = (new.space.knots[new.space.degree + 1 : -new.space.degree - 1] - a) / (b - a)
+    change = Change("freehand", first, last, new.points, "")
+    return with_change(curve, change, shares)
+
+
+def _between(path: Array, a: float, b: float) -> Array:
+    """Return the part of a path between two places on it."""
+
+    def point(at: float) -> Array:
+        i = min(int(at), len(path) - 2)
+        there: Array = path[i] + (at - i) * (path[i + 1] - path[i])
+        return there
+
+    inside = np.arange(int(np.floor(a)) + 1, int(np.ceil(b)))
+    return np.concatenate([point(a)[None], path[inside], point(b)[None]])
+
+
+def _outside(nodes: Array, a: float, b: float, count: int, period: float) -> tuple[int, int]:
+    """Return the last control point whose node is at most a, and the first whose node is at least b."""
+    if not period:
+        return int(np.searchsorted(nodes, a, "right")) - 1, int(np.searchsorted(nodes, b, "left"))
+    turns = np.concatenate([nodes - period, nodes, nodes + period])
+    first = int(np.searchsorted(turns, a, "right")) - 1 - count
+    last = int(np.searchsorted(turns, b, "left")) - count
+    return first, min(max(last, first + 1), first + count)
