@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.geometry.sampling import even_steps
 from knotwork.removal import reduce as fit  # FIXME
 from knotwork.sketch.knot_replacement import with_change
 from knotwork.sketch.rules import Change
@@ -33,8 +33,7 @@ def fitted(path: Array, tolerance: float, degree: int, closed: bool) -> Spline:
 
 def meetings(path: Array, curve: Spline, reach: float) -> list[Meeting]:
     """Return where a path meets a curve, in the order of the path: crossings, and ends of the path that lie near it."""
-    breaks = np.unique(curve.space.breaks)
-    u = np.unique(np.concatenate([np.linspace(a, b, SAMPLES + 1) for a, b in pairwise(breaks)]))
+    u = even_steps(curve, SAMPLES)
     points = curve(u)
     found = _crossings(path, points)
     met = [Meeting(float(u[i] + share * (u[i + 1] - u[i])), at) for i, share, at in found]

@@ -1,0 +1,1 @@
+"""The browser editor (chapter 7): the geometry runs here, the page draws and sends strokes."""

@@ -1,0 +1,91 @@
+"""Start the editor: a port of this computer, a token, a browser."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import socket
+import sys
+import webbrowser
+from collections.abc import Callable
+from pathlib import Path
+
+from knotwork.errors import MissingExtraError, ParameterError
+
+
+def data_directory() -> Path:
+    """Return where drawings are kept: ``$KNOTWORK_DATA`` or the user's directory for data."""
+    given = os.environ.get("KNOTWORK_DATA")
+    if given:
+        return Path(given)
+    if sys.platform == "win32":
+        return Path(os.environ.get("APPDATA", Path.home())) / "knotwork"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Application Support" / "knotwork"
+    return Path(os.environ.get("XDG_DATA_HOME", Path.home() / ".local" / "share")) / "knotwork"
+
+
+def edit(
+    file: Path | None = None,
+    *,
+    store: Path | None = None,
+    port: int = 0,
+    browse: bool = True,
+    announce: Callable[[str], None] = print,
+) -> None:
+    """Serve the editor on 127.0.0.1 until it is stopped.
+
+    Parameters
+    ----------
+    file : Path, optional
+        A drawing to open first; the file itself is not changed.
+    store : Path, optional
+        The SQLite file of the drawings; by default in the user's directory for data.
+    port : int
+        0 takes a free one.
+    browse : bool
+        Whether to open a browser.
+    announce : callable
+        Is told the address.
+
+    Raises
+    ------
+    MissingExtraError
+        If Starlette, uvicorn or websockets is not there.
+    FileError
+        If the file cannot be read.
+    """
+    try:
+        import uvicorn
+        import websockets  # noqa: F401
+        from starlette.applications import Starlette  # noqa: F401
+    except ImportError as exc:
+        raise MissingExtraError(
+            f"the editor needs {exc.name}; install it: pip install starlette uvicorn websockets"
+        ) from None
+    from knotwork.editor import exchange
+    from knotwork.editor.server import MESSAGE, application
+    from knotwork.editor.store import Store
+    from knotwork.files.storage import fetch
+    from knotwork.sketch import Sketch
+
+    if not 0 <= port <= 65535:
+        raise ParameterError(f"port {port} given; expected 0 to 65535")
+    drawings = Store(store or data_directory() / "drawings.sqlite3")
+    first = None
+    if file is not None:
+        curves, _ = exchange.brought(fetch(file), file.suffix.lower())
+        first = drawings.create(file.stem, Sketch(tuple(curves)))
+    with socket.socket() as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(("127.0.0.1", port))
+        number = listener.getsockname()[1]
+        token = secrets.token_urlsafe(24)
+        hosts = frozenset({f"127.0.0.1:{number}", f"localhost:{number}"})
+        address = f"http://127.0.0.1:{number}/?token={token}"
+        announce(address)
+        if browse:
+            webbrowser.open(address)
+        app = application(drawings, token, hosts, first)
+        config = uvicorn.Config(app, log_level="warning", ws_max_size=MESSAGE + 1000, server_header=False)
+        uvicorn.Server(config).run(sockets=[listener])

@@ -1,0 +1,3 @@
+import { App } from "./app.js";
+
+/** @type {any} */ (window).app = new App();
