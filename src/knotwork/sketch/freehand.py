@@ -8,7 +8,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.geometry.sampling import even_steps
-from knotwork.removal import reduce as fit  # FIXME
+from knotwork.removal import fit
 from knotwork.sketch.knot_replacement import with_change
 from knotwork.sketch.rules import Change
 from knotwork.spline import Spline

@@ -64,13 +64,15 @@ def side_of_shadow(point: Array, start: Array, end: Array) -> int:
 def distances(points: Array, line: Straight) -> Array:
     """Return how far points are from a stroke, shape (m,) for points of shape (m, 2)."""
     share = np.clip((points - line.tail) @ line.direction / line.length**2, 0, 1)
-    return np.hypot(*(points - line.tail - np.outer(share, line.direction)).T)
+    away: Array = np.hypot(*(points - line.tail - np.outer(share, line.direction)).T)
+    return away
 
 
 def projected(points: Array, line: Straight) -> Array:
     """Return the feet of points on the line of a stroke, kept between its tail and its head."""
     share = np.clip((points - line.tail) @ line.direction / line.length**2, 0, 1)
-    return line.tail + np.outer(share, line.direction)
+    feet: Array = line.tail + np.outer(share, line.direction)
+    return feet
 
 
 def distance(line: Straight, polygon: Array, closed: bool) -> tuple[float, int]:
