@@ -13,7 +13,7 @@ HELPED = 3.0
 FIRST = 16
 
 
-@kernel
+@kernel(inline=False)
 def kept(G, S, k0, k1, ja, jb, room, slot):
     """Keep pieces k0 … k1 and the parameters of samples ja … jb in a slot of the working space."""
     copied(G, room.pieces[slot], k0, k1 - k0 + 1, 0, room.D)
@@ -21,7 +21,7 @@ def kept(G, S, k0, k1, ja, jb, room, slot):
         room.u[slot, j - ja] = S.u[j]
 
 
-@kernel
+@kernel(inline=False)
 def restored(G, S, k0, k1, ja, jb, room, slot):
     """Bring back what was kept."""
     copied(room.pieces[slot], G, 0, k1 - k0 + 1, k0, room.D)
@@ -29,7 +29,7 @@ def restored(G, S, k0, k1, ja, jb, room, slot):
         S.u[j] = room.u[slot, j - ja]
 
 
-@kernel
+@kernel(inline=False)
 def behind(u, j, k, last):
     """Return the last sample up to `last` that is matched no later than joint k, starting to look at sample j."""
     while u[j] > k:
@@ -39,7 +39,7 @@ def behind(u, j, k, last):
     return j
 
 
-@kernel
+@kernel(inline=False)
 def tried(G, S, chain, start, opened, k, j, low, high, end, room, steps):
     """Try piece k up to sample `high`, `low` being the best so far (or its start j); return the largest distance."""
     D, tied = room.D, 1 if high == end else 0

@@ -12,7 +12,7 @@ from knotwork.removal.shapes.window import HOPELESS, TARGET, fitted_window
 RIDGE = 1e-7
 
 
-@kernel
+@kernel(inline=False)
 def by_length(S, ja, first, jb, k):
     """Give samples first … jb the parameters of piece k by length of chords; it begins at sample ja."""
     arc, u = S.arc, S.u

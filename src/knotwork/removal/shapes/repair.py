@@ -15,7 +15,7 @@ REACH = 2
 FORCED = 2
 
 
-@kernel
+@kernel(inline=False)
 def fine_sample(F, s, per, fine, j, room):
     """Write the point of f at s as forced fine sample j; room.p[1] is the origin."""
     i = min(int(s), len(F) - 1)
@@ -58,7 +58,7 @@ def forced(F, per, fine, end, S, last, failing, room):
     return end + new
 
 
-@kernel
+@kernel(inline=False)
 def interpolated(S, last, s0, u0, before):
     """Give the samples parameters by interpolation in the path (s0, u0), which has before + 1 nodes."""
     i = 0
@@ -70,7 +70,7 @@ def interpolated(S, last, s0, u0, before):
         S.u[j] = u0[i] + w * (u0[i + 1] - u0[i]) if w < 1 else u0[i + 1]
 
 
-@kernel
+@kernel(inline=False)
 def inserted(G, S, last, k, count, room):
     """Make place for a piece behind piece k; parameters follow."""
     for i in range(count, k, -1):
@@ -114,7 +114,7 @@ def split(G, S, last, j, k, count, room, steps):
     S.u[ja], S.u[jb] = first, after
 
 
-@kernel
+@kernel(inline=False)
 def halved(G, k, room):
     """Write the two halves of piece k to it and the next one (de Casteljau)."""
     for c in range(len(room.D)):
@@ -126,7 +126,7 @@ def halved(G, k, room):
         G[k + 1, 0, c], G[k + 1, 1, c], G[k + 1, 2, c], G[k + 1, 3, c] = middle, b1, a2, p3
 
 
-@kernel
+@kernel(inline=False)
 def chain(S, last, j, k, reach):
     """Return the pieces k0, k1 up to `reach` away from piece k, which holds sample j, that no hard joint parts from it.
 

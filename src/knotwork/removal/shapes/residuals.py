@@ -59,7 +59,7 @@ def row(G, k, at, room, state, half):
     return q, phi
 
 
-@kernel
+@kernel(inline=False)
 def speeds(G, k0, k1, room):
     """Bound the speed of each piece of a window: three times the longest difference of control points."""
     for k in range(k0, k1 + 1):
@@ -73,7 +73,7 @@ def speeds(G, k0, k1, room):
         room.speed[k - k0] = 3 * math.sqrt(longest)
 
 
-@kernel
+@kernel(inline=False)
 def fairness(G, k0, k1, room, state, weight):
     """Add weight Σ |Δ²c|² / length² to the normal equations; return it."""
     D, A, b = room.D, room.A, room.b
@@ -106,10 +106,10 @@ def fairness(G, k0, k1, room, state, weight):
 
 
 @kernel
-def node(G, k, t, S, j, along, room):
+def node(G, k, t, S, j, along, sample, room):
     """Write the distance of g(k + t) from the parabola of gap j to room.d; return how far along the chord its foot is.
 
-    Feet never run back behind `along`.
+    Feet never run back behind `along`. Or, if `sample`, the distance from the sample at the end.
     """
     y, a, d, B, D = S.y, S.a, room.d, room.B, room.D
     bernstein(t, B)
@@ -120,7 +120,7 @@ def node(G, k, t, S, j, along, room):
         across += d[c] * step
         chord += step * step
     w = across / chord if chord > 0 else 0.0
-    w = min(max(w, along), 1.0)
+    w = 1.0 if sample else min(max(w, along), 1.0)
     for c in range(len(D)):
         d[c] -= w * (y[j + 1, c] - y[j, c]) + 4 * w * (1 - w) * a[j, c]
     return w
@@ -133,8 +133,7 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
     The window may begin between samples ja and ja+1, and end between jb-1 and jb.
     Given up, with an infinite maximum, as soon as Φ is above the limit.
     """
-    u, y, D = S.u, S.y, room.D
-    d, B = room.d, room.B
+    u, D = S.u, room.D
     size = (3 * (k1 - k0) + 4) * len(D)
     for i in range(size):
         room.b[state, i] = 0
@@ -153,35 +152,37 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
             for i in range(k + 1, last):
                 way += room.speed[i - k0]
         count = 0 if way <= LONG else (NODES if not way < NODES else 1 + int(way))
-        along = 0.0
-        for i in range(1, count + 2):
+        along, i = 0.0, 1
+        while True:  # nodes, joints and the sample at the end, in order
             at = a + (b - a) * i / (count + 1) if i <= count else b
-            while k < last and k + 1 <= at:
-                if k + 1 < b:
-                    along = node(G, k, 1.0, S, j, along, room)
-                    q, part = row(G, k, 3 * (k - k0), room, state, half)
-                    phi += part
-                    worst = max(worst, q)
+            sample = False
+            if k < last and k + 1 <= at:
+                if k + 1 == b:
+                    k += 1
+                    continue
+                t = 1.0
+            elif i <= count:
+                t = at - k
+            elif u[j + 1] <= b:
+                t, sample = b - k, True
+            else:
+                break
+            along = node(G, k, t, S, j, along, sample, room)
+            q, part = row(G, k, 3 * (k - k0), room, state, half)
+            phi += part
+            worst = max(worst, q)
+            if sample:
+                break
+            if t == 1 and k < last:
                 k += 1
-            if i <= count:
-                along = node(G, k, at - k, S, j, along, room)
-                q, part = row(G, k, 3 * (k - k0), room, state, half)
-                phi += part
-                worst = max(worst, q)
-        if u[j + 1] > b:
-            continue
-        bernstein(b - k, B)
-        for c in range(len(D)):
-            d[c] = B[0] * G[k, 0, c] + B[1] * G[k, 1, c] + B[2] * G[k, 2, c] + B[3] * G[k, 3, c] - y[j + 1, c]
-        q, part = row(G, k, 3 * (k - k0), room, state, half)
-        phi += part
-        worst = max(worst, q)
+            else:
+                i += 1
         if phi > limit:
             return phi, math.inf
     return phi, math.sqrt(worst)
 
 
-@kernel
+@kernel(inline=False)
 def slopes(G, k, t, y, room):
     """Return (g - y)·g', |g'|² and (g - y)·g'' at t of piece k."""
     r = 1 - t
@@ -234,7 +235,7 @@ def rematched(G, k0, k1, S, ja, jb, room):
         pooled(u, ja, jb, max(u[ja], k0), min(u[jb], k1 + 1), room)
 
 
-@kernel
+@kernel(inline=False)
 def pooled(u, ja, jb, least, most, room):
     """Pool adjacent violators among the parameters strictly between ja and jb: means over blocks out of order."""
     mean, count = room.mean, room.merged

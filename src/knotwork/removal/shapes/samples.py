@@ -16,7 +16,7 @@ BENT = 0.02
 PARTS = (4, 4096)
 
 
-@kernel
+@kernel(inline=False)
 def parts(net, per, D):
     """Return into how many parts a Bézier piece is cut: chords within half a unit, two fine samples each; lines stay.
 
@@ -36,7 +36,7 @@ def parts(net, per, D):
     return 2 * max(PARTS[0], min(PARTS[1], int(count) + 1)) if count < PARTS[1] else 2 * PARTS[1]
 
 
-@kernel
+@kernel(inline=False)
 def point(net, t, room):
     """Write the point of a net at t to room.p[0], divided by its weight if it has one (de Casteljau)."""
     n, width, level, D = len(net) - 1, net.shape[1], room.level, room.D
@@ -94,7 +94,7 @@ def finely(F, per, hard, fine, room):
     return j
 
 
-@kernel
+@kernel(inline=False)
 def parabola(fine, i, stride, straight, d, D):
     """Write the sagitta of the parabola of fine samples i, i + stride/2, i + stride; tell whether the others fit."""
     y, m = fine.y, i + stride // 2

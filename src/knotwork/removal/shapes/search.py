@@ -108,7 +108,7 @@ def written(F, G, count, S, last, unit, out, room):
                     out[k - 1, 3, c] = p[0, c]
 
 
-@kernel
+@kernel(inline=False)
 def all_rematched(G, count, S, last, room):
     """Match all samples again between hard ones."""
     j = 0

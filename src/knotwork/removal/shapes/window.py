@@ -18,7 +18,7 @@ GAIN = 0.12
 NEAR = 1.2
 
 
-@kernel
+@kernel(inline=False)
 def copied(source, target, first, count, at, D):
     """Copy `count` nets from place `first` of one array to place `at` of another."""
     for k in range(count):
@@ -27,7 +27,7 @@ def copied(source, target, first, count, at, D):
                 target[at + k, i, c] = source[first + k, i, c]
 
 
-@kernel
+@kernel(inline=False)
 def solved(room, state, lo, hi, damping, D):
     """Solve (A + damping) x = b for unknowns lo … hi-1 by Cholesky in the band; tell whether it was definite."""
     A, L, x, band = room.A, room.L, room.x, 4 * len(D)
@@ -58,7 +58,7 @@ def solved(room, state, lo, hi, damping, D):
     return True
 
 
-@kernel
+@kernel(inline=False)
 def moved(G, k0, k1, room, lo, hi, D):
     """Subtract the solution from the free control points of a window."""
     for k in range(k0, k1 + 1):
