@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -11,9 +12,8 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import ParameterError, PointError
 from knotwork.removal.shapes import certificate, corners
-from knotwork.removal.shapes.room import room, samples
 from knotwork.removal.shapes.samples import counted
-from knotwork.removal.shapes.search import Curves, Effort, Found, Space, shortened
+from knotwork.removal.shapes.search import Effort, Found, Search
 
 EFFORTS = {
     "fast": Effort(width=1, steps=16, reach=0, rounds=6),
@@ -85,7 +85,7 @@ def reduce_bezier(
 
     Notes
     -----
-    Bounded: see `shortened`. Scaling by powers of two and moving the origin exactly change nothing else.
+    Bounded: see `Search.curve`. Scaling by powers of two and moving the origin exactly change nothing else.
     """
     nets, at = np.ascontiguousarray(nets, np.float64), np.ascontiguousarray(at, np.int64)
     d = nets.shape[2] - rational
@@ -118,18 +118,24 @@ def reduce_bezier(
         _keep(hard, np.asarray(keep, np.int64), at, start, closed)
     metric, reach = (1 / unit**2, 1.0) if each else (np.ones(d), float(unit[0]))
     found = _search(F, at, hard, unit, metric, reach, rational, EFFORTS[effort])
-    own = np.repeat(np.arange(count), found.pieces)
-    where = np.concatenate([[0], np.cumsum(found.pieces)])
-    G = found.G[found.room[own] + np.arange(len(own)) - where[own]]
+    G, where = _joined([c.G for c in found])
+    u, path = _joined([c.u for c in found])
+    s, _ = _joined([c.s for c in found])
+    square = np.array([c.square for c in found])
     sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
-    bound = (np.sqrt(found.square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(d)
+    bound = (np.sqrt(square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(d)
     if not each:
         bound = np.ldexp(bound, exponent)
-    bad = (found.pieces > 0) & ~(bound <= (1.0 if each else tolerance))
-    bound[found.pieces == 0] = 0
-    nodes = int(found.at[-1])
-    result = Pieces(_unscaled(G, exponent, rational), where, found.u[:nodes], found.s[:nodes], found.at, bound, start)
+    some = where[1:] > where[:-1]
+    bad = some & ~(bound <= (1.0 if each else tolerance))
+    bound[~some] = 0
+    result = Pieces(_unscaled(G, exponent, rational), where, u, s, path, bound, start)
     return _without(result, bad) if bad.any() else result
+
+
+def _joined(parts: list[Array]) -> tuple[Array, Array]:
+    """Return arrays one behind the other, and where each begins."""
+    return np.concatenate(parts), np.concatenate([[0], np.cumsum([len(p) for p in parts])])
 
 
 def _unscaled(G: Array, exponent: int, rational: bool) -> Array:
@@ -183,34 +189,22 @@ def _keep(hard: Array, keep: Array, at: Array, start: Array, closed: Array) -> N
 
 def _search(
     F: Array, at: Array, hard: Array, unit: Array, metric: Array, reach: float, rational: bool, effort: Effort
-) -> Found:
-    """Run the search, with room for what comes out."""
-    q, d, count, sizes = F.shape[1] - 1, len(unit), len(at) - 1, np.diff(at)
+) -> list[Found]:
+    """Search for pieces near each curve; none where there are none."""
+    q, d, sizes = F.shape[1] - 1, len(unit), np.diff(at)
     allowed = ALLOWED * (sizes + 4) if rational or q > 3 else np.maximum(sizes - 1, 0)
     # how large g is, is not known yet: mostly no larger than f and some tolerances
     largest = _sizes(F, at, rational)
     left = np.maximum(reach / _outward(d) - _allowance(metric, 2 * largest + 4 * unit, q, rational), 0)
-    loop = certificate.loop
-    product = certificate.products(3, q) if rational else np.zeros((0, 0))
-    curves = Curves(F, at, hard, unit, 1 / unit, left * left / _outward(d), metric, product, loop(d), loop(F.shape[2]))
-    most = counted(F, at, curves.per, extent(d))
-    most += most // 2 + 64
-    pieces = int(allowed.max(initial=0)) + 2
-    space = Space(
-        samples(most, d), samples(most, d), room(most, d, q), certificate.room_for(q, 3, F.shape[2]),
-        np.zeros((pieces, 4, d)), np.zeros(2 * most), np.zeros(2 * most), np.zeros(most),
-    )  # fmt: skip
-    where = np.concatenate([[0], np.cumsum(allowed)])
-    nodes = 4 * len(F) + 2 * most + 64
-    found = Found(
-        np.zeros((where[-1], 4, F.shape[2])), where, np.zeros(count, np.int64), np.zeros(nodes), np.zeros(nodes),
-        np.zeros(count + 1, np.int64), np.zeros(count), np.zeros(d),
-    )  # fmt: skip
-    done = 0
-    while (done := int(shortened(curves, found, done, space, effort))) < count:
-        more = np.zeros(len(found.u))
-        found = found._replace(u=np.concatenate([found.u, more]), s=np.concatenate([found.s, more]))
-    return found
+    target = left * left / _outward(d)
+    most = counted(F, at, 1 / unit, extent(d))
+    search = Search(most + most // 2 + 64, int(allowed.max(initial=0)), unit, metric, q, rational)
+    none = Found(np.zeros((0, 4, F.shape[2])), np.zeros(0), np.zeros(0), 0.0)
+    result = []
+    for i, (lo, hi) in enumerate(itertools.pairwise(at.tolist())):
+        found = search.curve(F[lo:hi], hard[lo + i : hi + i + 1], target[i], allowed[i], effort) if allowed[i] else None
+        result.append(found or none)
+    return result
 
 
 def _outward(d: int) -> float:

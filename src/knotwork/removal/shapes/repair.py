@@ -59,11 +59,11 @@ def forced(F, per, fine, end, S, last, failing, room):
 
 
 @kernel(inline=False)
-def interpolated(S, last, s0, u0, before):
-    """Give the samples parameters by interpolation in the path (s0, u0), which has before + 1 nodes."""
+def interpolated(S, last, s0, u0):
+    """Give the samples parameters by interpolation in the path (s0, u0)."""
     i = 0
     for j in range(last + 1):
-        while i < before - 1 and s0[i + 1] < S.s[j]:
+        while i < len(s0) - 2 and s0[i + 1] < S.s[j]:
             i += 1
         way = s0[i + 1] - s0[i]
         w = min(max((S.s[j] - s0[i]) / way, 0.0), 1.0) if way > 0 else 1.0
@@ -150,15 +150,14 @@ def chain(S, last, j, k, reach):
 
 
 @kernel(inline=False)
-def repaired(G, S, last, count, most, places, s0, u0, before, room, steps):
-    """Fit the pieces at the first `places` parameters in s0 again, or split them; return how many pieces there are.
+def repaired(G, S, last, count, most, places, room, steps):
+    """Fit the pieces at some places of f again, or split them; return how many pieces there are.
 
-    Given up, with most + 1, when there are more pieces than `most`. s0 holds the places behind the path of before + 1
-    nodes. Samples were added, so all parameters are new.
+    Given up, with most + 1, when there are more pieces than `most`.
     """
     done = -1
-    for n in range(places):
-        s = s0[before + 1 + n]
+    for n in range(len(places)):
+        s = places[n]
         j = 0
         i, m = 0, last
         while m - i > 1:

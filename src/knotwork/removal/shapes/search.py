@@ -1,16 +1,20 @@
-"""Few cubics within a distance of shapes, of many curves: the search, certified curve by curve."""
+"""Few cubics near one curve: samples, the greedy search, the certificate, repair, in turn."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import kernel
+from knotwork.removal.shapes import certificate
 from knotwork.removal.shapes.greedy import greedy
 from knotwork.removal.shapes.matching import Pair, path_square
 from knotwork.removal.shapes.rematching import refined
 from knotwork.removal.shapes.repair import forced, interpolated, repaired
 from knotwork.removal.shapes.residuals import rematched
+from knotwork.removal.shapes.room import room, samples
 from knotwork.removal.shapes.samples import finely, merged, point
 
 #: how often a curve is begun anew, with what was learned about its samples
@@ -30,52 +34,85 @@ class Effort(NamedTuple):
     rounds: int
 
 
-class Curves(NamedTuple):
-    """What is given: all curves one behind the other."""
-
-    #: nets, and where each curve begins
-    F: Array
-    at: Array
-    #: joints that stay, one more than pieces for each curve
-    hard: Array
-    #: the tolerance of each component and one over it
-    unit: Array
-    per: Array
-    #: of the certificate: square of the largest distance allowed for each curve, metric, products, loops
-    target: Array
-    metric: Array
-    product: Array
-    D: Any
-    W: Any
-
-
 class Found(NamedTuple):
-    """What is found."""
+    """Pieces, the matching path, and the square of the distance that it proves."""
 
-    #: nets, where there is room for those of each curve, and how many there are: none, if not fewer than given
     G: Array
-    room: Array
-    pieces: Array
-    #: paths, and where each begins
     u: Array
     s: Array
-    at: Array
-    #: square of the proven distance, and a working space for components
-    square: Array
-    widest: Array
+    square: float
 
 
-class Space(NamedTuple):
-    """Working space: fine samples, samples, search, certificate; pieces, a path, where it fails."""
+class Search:
+    """Working space for curves of one kind, of up to so many fine samples and pieces; and what they have in common."""
 
-    fine: Any
-    S: Any
-    search: Any
-    matching: Any
-    G: Array
-    s: Array
-    u: Array
-    failing: Array
+    def __init__(self, count: int, pieces: int, unit: Array, metric: Array, q: int, rational: bool) -> None:
+        d = len(unit)
+        self.unit, self.per, self.metric = unit, 1 / unit, metric
+        self.product = certificate.products(3, q) if rational else np.zeros((0, 0))
+        self.loops = certificate.loop(d), certificate.loop(d + rational)
+        self.fine, self.samples, self.room = samples(count, d), samples(count, d), room(count, d, q)
+        self.matching = certificate.room_for(q, 3, d + rational)
+        self.G, self.out = np.zeros((pieces + 2, 4, d)), np.zeros((pieces + 2, 4, d + rational))
+        self.u, self.s = np.zeros(0), np.zeros(0)
+        self.failing, self.widest = np.zeros(count), np.zeros(d)
+
+    def curve(self, F: Array, hard: Array, target: float, most: int, effort: Effort) -> Found | None:
+        """Find at most `most` pieces near a curve, or none; `target` is the square of the largest distance allowed.
+
+        Bounded: at most about log n tries a piece, effort.steps steps a fit, effort.rounds rounds of repair, and all
+        that ATTEMPTS times.
+        """
+        fine = self.fine
+        end = int(finely(F, self.per, hard, fine, self.room))
+        for attempt in range(ATTEMPTS):
+            if attempt == ATTEMPTS - 1:  # the last time with all samples
+                inside = fine.hard[1:end]
+                inside[inside == 0] = 2
+            last = int(merged(fine, end, F.shape[1] == 2, self.samples, self.room))
+            count = int(greedy(self.G, self.samples, last, self.room, effort.width, effort.steps, most))
+            if count > most:
+                return None
+            found, end = self._certified(F, end, last, count, most, target, effort)
+            if found or end == 0:
+                return found
+        return None
+
+    def _certified(
+        self, F: Array, end: int, last: int, count: int, most: int, target: float, effort: Effort
+    ) -> tuple[Found | None, int]:
+        """Prove what the search has found, repairing it where that fails; return also the last fine sample, or 0."""
+        S, G, room = self.samples, self.G, self.room
+        for _ in range(effort.rounds):
+            written(F, G, count, S, last, self.unit, self.out, room)
+            pair = Pair(F, self.out[:count], self.metric, self.product, *self.loops)
+            u, s = S.u[: last + 1], S.s[: last + 1]
+            nodes = self._refined(pair, target, u, s)
+            places = np.flatnonzero(self.failing[:last] >= 0)
+            if not len(places):
+                u, s = self.u[:nodes], self.s[:nodes]
+                square = path_square(pair, self.matching, u, s, self.widest)
+                return Found(self.out[:count].copy(), u.copy(), s.copy(), float(square)), end
+            u, s = u.copy(), s.copy()
+            where = (np.maximum(self.failing[places], s[places]) + s[places + 1]) / 2
+            end = int(forced(F, self.per, self.fine, end, S, last, self.failing, room))
+            if end == 0:
+                return None, 0
+            last = int(merged(self.fine, end, F.shape[1] == 2, S, room))
+            interpolated(S, last, s, u)
+            all_rematched(G, count, S, last, room)
+            count = int(repaired(G, S, last, count, most, where, room, effort.steps))
+            if count > most:
+                return None, end
+        return None, end
+
+    def _refined(self, pair: Pair, target: float, u: Array, s: Array) -> int:
+        """Write a finer path to self.u and self.s, and where it fails to self.failing; return how many nodes it has."""
+        while True:
+            nodes = int(refined(pair, self.matching, target, u, s, self.u, self.s, self.failing)) if len(self.u) else 0
+            if nodes:
+                return nodes
+            self.u, self.s = (np.zeros(2 * len(self.u) + 4 * len(u) + 64) for _ in range(2))
 
 
 @kernel(inline=False)
@@ -118,80 +155,3 @@ def all_rematched(G, count, S, last, room):
             end += 1
         rematched(G, int(S.u[j]), int(S.u[end]) - 1, S, j, end, room)
         j = end
-
-
-@kernel(inline=False)
-def certified(F, curve, end, last, count, most, curves, found, first, space, effort):
-    """Prove pieces near a curve, repairing them where that fails; return three numbers: of pieces, nodes, fine samples.
-
-    No pieces: it failed. No nodes: there was no space for the path.
-    """
-    fine, S, G, room = space.fine, space.S, space.G, space.search
-    out = found.G[found.room[curve] : found.room[curve + 1]]
-    U, V, failing = found.u[first:], found.s[first:], space.failing
-    for _ in range(effort.rounds):
-        written(F, G, count, S, last, curves.unit, out, room)
-        pair = Pair(F, out[:count], curves.metric, curves.product, curves.D, curves.W)
-        target, u, s = curves.target[curve], S.u[: last + 1], S.s[: last + 1]
-        nodes = refined(pair, space.matching, target, u, s, U, V, failing)
-        if nodes == 0:
-            return count, 0, end
-        places = 0
-        for j in range(last):
-            if failing[j] >= 0:
-                places += 1
-        if places == 0:
-            found.square[curve] = path_square(pair, space.matching, U[:nodes], V[:nodes], found.widest)
-            return count, nodes, end
-        if last + places + 2 > len(space.s):
-            return 0, 1, 0
-        for j in range(last + 1):
-            space.s[j], space.u[j] = S.s[j], S.u[j]
-        places = 0
-        for j in range(last):
-            if failing[j] >= 0:
-                places += 1
-                space.s[last + places] = (max(failing[j], S.s[j]) + S.s[j + 1]) / 2
-        end = forced(F, curves.per, fine, end, S, last, failing, room)
-        if end == 0:
-            return 0, 1, 0
-        before = last
-        last = merged(fine, end, F.shape[1] == 2, S, room)
-        interpolated(S, last, space.s, space.u, before)
-        all_rematched(G, count, S, last, room)
-        count = repaired(G, S, last, count, most, places, space.s, space.u, before, room, effort.steps)
-        if count > most:
-            return 0, 1, end
-    return 0, 1, end
-
-
-@kernel(inline=False)
-def shortened(curves, found, first, space, effort):
-    """Find few pieces for all curves from number `first` on; return the number of the curve the paths have no room for.
-
-    Bounded: at most about log n tries a piece, effort.steps steps a fit, effort.rounds rounds of repair, thrice.
-    """
-    fine, S, room = space.fine, space.S, space.search
-    for curve in range(first, len(curves.at) - 1):
-        lo, hi, at = curves.at[curve], curves.at[curve + 1], found.at[curve]
-        F = curves.F[lo:hi]
-        most = found.room[curve + 1] - found.room[curve]
-        count, nodes = 0, 1
-        end = finely(F, curves.per, curves.hard[lo + curve : hi + curve + 1], fine, room) if most > 0 else 0
-        for attempt in range(ATTEMPTS):
-            if end == 0 or count > 0:
-                continue
-            if attempt == ATTEMPTS - 1:  # the last time with all samples
-                for j in range(1, end):
-                    fine.hard[j] = max(fine.hard[j], 2 * (1 - fine.hard[j]))
-            last = merged(fine, end, F.shape[1] == 2, S, room)
-            count = greedy(space.G, S, last, room, effort.width, effort.steps, most)
-            if count > most:
-                count, end = 0, 0
-            if count > 0:
-                count, nodes, end = certified(F, curve, end, last, count, most, curves, found, at, space, effort)
-        if nodes == 0:
-            return curve
-        found.pieces[curve] = count
-        found.at[curve + 1] = at + (nodes if count > 0 else 0)
-    return len(curves.at) - 1
