@@ -13,7 +13,6 @@ from knotwork.removal.shapes.greedy import greedy
 from knotwork.removal.shapes.matching import Pair, path_square
 from knotwork.removal.shapes.rematching import refined
 from knotwork.removal.shapes.repair import forced, interpolated, repaired
-from knotwork.removal.shapes.residuals import rematched
 from knotwork.removal.shapes.room import room, samples
 from knotwork.removal.shapes.samples import finely, merged, point
 
@@ -100,7 +99,6 @@ class Search:
                 return None, 0
             last = int(merged(self.fine, end, F.shape[1] == 2, S, room))
             interpolated(S, last, s, u)
-            all_rematched(G, count, S, last, room)
             count = int(repaired(G, S, last, count, most, where, room, effort.steps))
             if count > most:
                 return None, end
@@ -143,15 +141,3 @@ def written(F, G, count, S, last, unit, out, room):
                     out[k, 0, c] = p[0, c]
                 if k > 0:
                     out[k - 1, 3, c] = p[0, c]
-
-
-@kernel(inline=False)
-def all_rematched(G, count, S, last, room):
-    """Match all samples again between hard ones."""
-    j = 0
-    while j < last:
-        end = j + 1
-        while not S.hard[end]:
-            end += 1
-        rematched(G, int(S.u[j]), int(S.u[end]) - 1, S, j, end, room)
-        j = end
