@@ -10,38 +10,42 @@ from knotwork.linear.banded import Banded
 
 
 @kernel
+def rotate(w, x, p, k, R, D, z):
+    """Bring one more row √w·(x | p), with entries from column k on, into the triangular form √D·(R | z).
+
+    Givens rotations without square roots (Gentleman 1973); the unit diagonal of R is not stored. Uses up x and p.
+    """
+    band = len(x)
+    for r in range(band):
+        xk = x[r]
+        if w == 0 or xk == 0:
+            continue
+        d = D[k + r] + w * xk * xk
+        keep, mix = D[k + r] / d, w * xk / d
+        D[k + r] = d
+        w = w * keep
+        for q in range(r + 1, band):
+            xq = x[q]
+            x[q] = xq - xk * R[k + r, q - r]
+            R[k + r, q - r] = keep * R[k + r, q - r] + mix * xq
+        for c in range(len(p)):
+            pc = p[c]
+            p[c] = pc - xk * z[k + r, c]
+            z[k + r, c] = keep * z[k + r, c] + mix * pc
+
+
+@kernel
 def triangularise(first, X, weight, y, R, D, z, x, p):
     """Bring the rows √weight·(X | y), with entries from column first[i] on, to triangular form √D·(R | z).
 
-    Givens rotations without square roots (Gentleman 1973). `first` does not decrease, so R is as narrow as X; its
-    unit diagonal is not stored. x and p: room for one row.
+    `first` does not decrease, so R is as narrow as X. x and p: room for one row.
     """
-    band = X.shape[1]
     for i in range(len(first)):
-        w = weight[i]
-        for r in range(band):
+        for r in range(len(x)):
             x[r] = X[i, r]
         for c in range(len(p)):
             p[c] = y[i, c]
-        for r in range(band):
-            k = first[i] + r
-            xk = x[r]
-            if w == 0 or xk == 0:
-                continue
-            d = D[k] + w * xk * xk
-            if d == 0:  # too small for a number
-                continue
-            keep, mix = D[k] / d, w * xk / d
-            D[k] = d
-            w = w * keep
-            for q in range(r + 1, band):
-                xq = x[q]
-                x[q] = xq - xk * R[k, q - r]
-                R[k, q - r] = keep * R[k, q - r] + mix * xq
-            for c in range(len(p)):
-                pc = p[c]
-                p[c] = pc - xk * z[k, c]
-                z[k, c] = keep * z[k, c] + mix * pc
+        rotate(weight[i], x, p, first[i], R, D, z)
 
 
 @kernel

@@ -12,8 +12,10 @@ from knotwork.errors import ParameterError
 from knotwork.knots import distinct, multiplicities
 from knotwork.removal.features import Kept, kept_features
 from knotwork.removal.lyche_morken import search
+from knotwork.removal.pieces import fewest_points
 from knotwork.removal.problem import Original
 from knotwork.removal.result import Progress, Reduction
+from knotwork.removal.roads import reduced
 from knotwork.removal.surfaces import without_lines
 from knotwork.spline import Spline
 
@@ -165,8 +167,27 @@ def reduce(
     pinned, stay = kept_features(spline, keep, ends)
     original = Original(spline, 0, tolerance, pinned)
     candidates: Array = spline.space.removable & ~stay
-    result, mask = search(original, candidates, progress)
-    return Reduction(result.spline, original.told(result, "reduce"), removed=spline.space.knots[~mask], effort=effort)
+    found = None
+    if method is None and _has_roads(original):
+        if spline.space.periodic:  # no place is first: the seam may go like any other knot
+            candidates = candidates | (np.arange(len(candidates)) == 0) & ~stay
+        found = reduced(original, candidates, effort, progress)
+    result, mask = found or search(original, spline.space.removable & ~stay, progress)
+    return Reduction(
+        result.spline,
+        original.told(result, "reduce"),
+        removed=spline.space.knots[~mask],
+        lower_bound=fewest_points(original),
+        effort=effort,
+    )
+
+
+def _has_roads(original: Original) -> bool:
+    """Tell whether a curve is one for roads of removals: in floats, with a measure that makes a change one number."""
+    if original.exact or original.space.degree == 0:
+        return False
+    given = original.tolerance.given
+    return given.ndim == 0 or (original.spline.coefficients.dtype.kind != "c" and bool((given > 0).all()))
 
 
 def _reduced_shape(

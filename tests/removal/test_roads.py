@@ -1,0 +1,183 @@
+"""Reduction by roads of removals: monotone, the same under scaling, with what is kept kept, and bounds that hold."""
+
+from __future__ import annotations
+
+import os
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import knotwork as kw
+import knotwork.errors
+from knotwork import Spline, SplineSpace
+from knotwork.removal.pieces import fewest_points
+from knotwork.removal.problem import Original
+
+#: random results that are worked out again in Fractions; 10000 before a release
+AGAIN = int(os.environ.get("KNOTWORK_RECHECK", "12"))
+
+
+def random_curve(seed, kind="plain"):
+    """Return a curve of uneven knots, some of them multiple, smooth or rough, of any size."""
+    rng = np.random.default_rng(seed)
+    degree, count = int(rng.integers(1, 6)), int(rng.integers(12, 90))
+    inner = np.sort(rng.random(count))
+    copies = rng.choice([1, 1, 1, 1, 2, degree], count).clip(1, degree)
+    inner = np.repeat(inner, copies)
+    if kind == "periodic":
+        space = SplineSpace(degree, np.concatenate([[0.0], inner, [1.0]]), periodic=True)
+    else:
+        space = SplineSpace(degree, np.concatenate([[0.0] * (degree + 1), inner, [1.0] * (degree + 1)]))
+    x = space.nodes
+    d = np.stack([np.sin(9 * x + rng.random()), np.cos(5 * x)], axis=1) * 10.0 ** rng.integers(-3, 4)
+    d += 10.0 ** rng.uniform(-6, -1) * rng.standard_normal(d.shape) * np.abs(d).max()
+    if kind == "rational":
+        w = 10.0 ** (6 * np.sin(7 * x + rng.random()) * rng.random())[:, None]
+        return Spline(space, np.concatenate([d * w, w], axis=1), rational=True)
+    return Spline(space, d.astype(np.float32) if kind == "float32" else d)
+
+
+def off_in_fractions(curve, result):
+    """Return the square of the largest distance at many parameters, from exact values at them."""
+    f, g = curve.in_exact_arithmetic(), result.spline.in_exact_arithmetic()
+    breaks = np.unique(np.concatenate([curve.space.breaks, [curve.space.domain[0]]]))
+    a, b = (Fraction(x) for x in curve.space.domain)
+    c = Fraction(g.space.domain[1]) if g.space.periodic else b
+    u = [a + (b - a) * Fraction(k, 37) for k in range(37)] + [Fraction(x) for x in breaks[:40]]
+    u = [x for x in u if x <= b]
+    there = [x + (c - b if x < Fraction(g.space.domain[0]) else 0) for x in u]
+    there = [x + (b - a) if x < Fraction(g.space.domain[0]) else x for x in u] if g.space.periodic else there
+    inside = [(x, y) for x, y in zip(u, there, strict=True) if g.space.domain[0] <= y <= g.space.domain[1]]
+    p, q = f([x for x, _ in inside]), g([y for _, y in inside])
+    return ((p - q) ** 2).sum(axis=-1).max()
+
+
+@pytest.mark.parametrize("kind", ["plain", "rational", "periodic", "float32"])
+def test_bounds_hold_when_worked_out_in_fractions(kind):
+    for seed in range(AGAIN):
+        curve = random_curve(seed, kind)
+        tolerance = 10.0 ** np.random.default_rng(seed).uniform(-4, 0) * float(np.ptp(curve.points, axis=0).max())
+        result = kw.reduce(curve, tolerance, effort=["fast", "normal"][seed % 2])
+        assert result.bound <= tolerance
+        assert off_in_fractions(curve, result) <= Fraction(result.bound) ** 2
+        assert result.spline.space.periodic == curve.space.periodic
+        assert len(result.removed) == curve.space.dimension - result.spline.space.dimension
+
+
+@pytest.mark.parametrize("kind", ["plain", "periodic"])
+@pytest.mark.parametrize("effort", ["fast", "normal"])
+@settings(max_examples=8)
+@given(seed=st.integers(0, 10**6))
+def test_a_larger_tolerance_never_leaves_more(kind, effort, seed):
+    curve = random_curve(seed, kind)
+    size = float(np.abs(curve.points).max())
+    tolerances = [0.0, *(size * 10.0 ** np.random.default_rng(seed).uniform(-6, 0, 10))]
+    left = [kw.reduce(curve, e, effort=effort).spline.space.dimension for e in sorted(tolerances)]
+    assert left == sorted(left, reverse=True)
+
+
+def test_a_straight_row_of_points():
+    """Tolerances at which 8, 39, 146, 49 and 4 points were left once."""
+    curve = kw.curve(np.linspace(0, 1, 500))
+    left = [kw.reduce(curve, e).spline.space.dimension for e in (0, 1e-4, 3e-4, 5e-4, 1e-3, 2e-3)]
+    assert left == sorted(left, reverse=True)
+    assert (left[0], left[-1]) == (8, 4)
+    line = Spline(curve.space, curve.space.nodes)
+    assert kw.reduce(line, 0).spline.space.dimension == 4
+
+
+@pytest.mark.parametrize("k", [-40, 7])
+def test_scaling_and_moving_exactly_leave_the_knots(k):
+    for kind in ("plain", "periodic"):
+        curve = random_curve(3, kind)
+        c = np.round(curve.coefficients * 2**20) / 2**20
+        curve = Spline(curve.space, c)
+        tolerance = float(np.ptp(c)) / 100
+        plain = kw.reduce(curve, tolerance)
+        scaled = kw.reduce(Spline(curve.space, c * 2.0**k), tolerance * 2.0**k)
+        moved = kw.reduce(Spline(curve.space, c + 1024.0), tolerance)
+        assert len(plain.removed)
+        assert scaled.removed.tolist() == moved.removed.tolist() == plain.removed.tolist()
+        assert (scaled.spline.coefficients == plain.spline.coefficients * 2.0**k).all()
+
+
+def test_a_closed_curve_has_no_first_point():
+    square = [[10, 0], [10, 10], [0, 10], [0, 0], [5, 0]]
+    result = kw.reduce(kw.curve(square, 1, [0, 5, 15, 25, 35, 40], periodic=True), 0.0)
+    assert sorted(result.spline.points.round(12).tolist()) == [[0, 0], [0, 10], [10, 0], [10, 10]]
+    assert result.removed.tolist() == [0.0]
+    assert result.spline(0.0) == pytest.approx([5, 0])
+
+
+def test_weights_far_apart():
+    rng = np.random.default_rng(0)
+    curve = kw.curve(rng.standard_normal((60, 2)), 1, weights=10.0 ** rng.uniform(-6, 6, 60))
+    fine = kw.insert(curve, np.linspace(0.013, 0.98, 60))
+    result = kw.reduce(fine, 1e-6)
+    assert result.bound <= 1e-6
+    assert off_in_fractions(fine, result) <= Fraction(result.bound) ** 2
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_what_is_kept_stays_bit_for_bit(periodic):
+    x = np.linspace(0, 1, 200)
+    points = np.stack([np.sin(6 * x), np.cos(11 * x)], axis=1)
+    curve = kw.curve(points, periodic=periodic)
+    knot = curve.space.knots[80]
+    result = kw.reduce(curve, 0.02, keep=[knot, (0.4, 0.45), (0.7, 0.7)])
+    assert result.spline.space.multiplicity(knot) == 1
+    u = np.append(np.linspace(0.4, 0.45, 50), 0.7)
+    assert (result.spline(u) == curve(u)).all()
+    assert result.spline.space.dimension < 60
+
+
+def test_corners_and_derivatives_at_ends_stay():
+    corners = np.array([[0, 0], [1, 3], [2, 1], [5, 2.0]])
+    line = kw.elevate(kw.insert(kw.curve(corners, 1), np.linspace(0.05, 0.95, 19)), 2)
+    result = kw.reduce(line, 10.0, keep="corners")
+    at = line.space.breaks
+    assert (result.spline(at) == line(at)).all()
+    x = np.linspace(0, 1, 100)
+    curve = kw.curve(np.stack([np.sin(6 * x), np.cos(11 * x)], axis=1))
+    result = kw.reduce(curve, 5.0, ends=(2, 1)).spline
+    assert (result.derivatives(0.0, 2) == curve.derivatives(0.0, 2)).all()
+    assert (result.derivatives(1.0, 1) == curve.derivatives(1.0, 1)).all()
+    assert result.space.dimension < 20
+
+
+def test_a_tolerance_below_the_rounding_of_float32_says_so():
+    curve = kw.insert(kw.curve(np.random.default_rng(0).standard_normal((9, 2)).astype(np.float32)), [0.21, 0.43])
+    with pytest.warns(kw.errors.RoundingWarning, match="the bound is"):
+        result = kw.reduce(curve, 1e-9)
+    assert result.spline.space.dimension == 9
+
+
+@pytest.mark.parametrize("effort", ["fast", "normal", "best"])
+@pytest.mark.parametrize("points", [[[1, 2]] * 9, [[0, 0], [3, 1]], np.zeros((7, 1)), [[k, 2 * k] for k in range(6)]])
+def test_points_that_hardly_make_a_curve(points, effort):
+    curve = kw.curve(points, 1)
+    for tolerance in (0, 1e-9, 3.0):
+        result = kw.reduce(curve, tolerance, effort=effort)
+        assert result.spline.space.dimension == 2
+        assert (result.spline.points == curve.points[[0, -1]]).all()
+
+
+def test_no_spline_has_fewer_points_than_the_lower_bound():
+    """A spline with few knots, hidden among many: the bound may not pass them, and tells when the fewest are found."""
+    for degree in (1, 2, 3, 5):
+        few = kw.curve(np.random.default_rng(degree).standard_normal((degree + 4, 2)), degree)
+        many = kw.insert(few, np.random.default_rng(1).random(150))
+        assert degree < fewest_points(Original(many, 0, 1e-9)) <= few.space.dimension
+        result = kw.reduce(many, 1e-9)
+        assert result.lower_bound <= result.spline.space.dimension == few.space.dimension
+
+
+@pytest.mark.parametrize("option", [{"form": "bezier"}, {"effort": "most"}, {"keep": "lines"}, {"method": "sisl"}])
+def test_options_that_are_not_known(option):
+    with pytest.raises(kw.errors.ParameterError):
+        kw.reduce(kw.curve([[0, 0], [1, 1], [2, 0], [4, 4], [5, 5]]), 0.1, **option)
+    with pytest.raises(kw.errors.ParameterError, match="fit takes points"):
+        kw.reduce([[0, 0], [1, 1], [2, 0]], 0.1)
