@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import knotwork as kw
 import strategies as kinds
 from knotwork import Spline, SplineSpace
-from knotwork.errors import KnotworkError, ParameterError
+from knotwork.errors import ParameterError
 from removal.certificate import largest_coefficients, largest_lengths, true_distances, true_errors
 
 
@@ -305,9 +305,3 @@ def test_an_error_of_the_progress_callback_passes_through():
 def test_bad_tolerances(tolerance, words):
     with pytest.raises(ParameterError, match=words):
         kw.reduce(noisy(20), tolerance)
-
-
-def test_a_surface_is_refused():
-    with pytest.raises(ParameterError, match="2 parameters"):
-        kw.reduce(kw.surface(np.zeros((4, 4, 3))), 0.1)
-    assert issubclass(ParameterError, KnotworkError)
