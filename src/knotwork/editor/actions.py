@@ -165,7 +165,7 @@ def reduced(sketch: Sketch, message: Message) -> Done:
     index, curve = _curve(sketch, message)
     tolerance = message.number("tolerance", 0)
     if "region" in message:
-        a, b = (float(x) for x in message.numbers("region", 2))
+        a, b = message.point("region").tolist()
         after, bound = _reduced_between(curve, a, b, tolerance)
     else:
         found = reduce(curve, tolerance)
@@ -188,7 +188,7 @@ def _reduced_between(curve: Spline, a: float, b: float, tolerance: float) -> tup
 def balance(sketch: Sketch, message: Message) -> Done:
     """Stretch the parameters of a region to the pace of the rest."""
     index, curve = _curve(sketch, message)
-    a, b = (float(x) for x in message.numbers("region", 2))
+    a, b = message.point("region").tolist()
     after = balanced(curve, a, b)
     return Done(sketch.with_curve(index, after, begun=False), "balanced", "The region has more parameters now.", index)
 
@@ -196,7 +196,7 @@ def balance(sketch: Sketch, message: Message) -> Done:
 def cut_out(sketch: Sketch, message: Message) -> Done:
     """Keep the part of a curve between two parameters."""
     index, curve = _curve(sketch, message)
-    a, b = (float(x) for x in message.numbers("region", 2))
+    a, b = message.point("region").tolist()
     return Done(sketch.with_curve(index, trim(curve, a, b), begun=False), "trimmed", "The rest was cut off.", index)
 
 

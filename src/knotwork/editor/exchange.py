@@ -99,7 +99,7 @@ def _polyline(curve: Spline) -> Spline:
         return curve
     opened = clamp(curve) if curve.space.periodic else curve
     u = even_steps(opened, 16)
-    return kw.curve(opened(u), 1, np.concatenate([u[:1], u, u[-1:]]))
+    return kw.Spline(SplineSpace.bezier(1, u), opened(u))
 
 
 def as_python(curves: list[Spline]) -> str:

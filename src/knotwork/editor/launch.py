@@ -79,6 +79,7 @@ def edit(
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(("127.0.0.1", port))
+        listener.listen(100)  # who follows the address at once waits, and is not turned away
         number = listener.getsockname()[1]
         token = secrets.token_urlsafe(24)
         hosts = frozenset({f"127.0.0.1:{number}", f"localhost:{number}"})

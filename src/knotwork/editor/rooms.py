@@ -113,6 +113,12 @@ class Rooms:
 
     async def _change(self, tab: Tab, document: str, message: Message) -> dict[str, Any]:
         state = self.state(document)
+        stale = "based on" in message and message.whole("based on", 0, 2**53) != state.number
+        key = message.text("key", 64) if "key" in message else None
+        if key and self._store.has(document, key):  # said again after the line broke
+            return self._news(tab, state)
+        if stale:  # so an undo that is said again is not done twice either
+            raise ConflictError("the drawing was changed elsewhere in the meantime; here it is")
         if message.choice("do", ("undo", "redo", *actions.ACTIONS)) in ("undo", "redo"):
             move = self._store.undo if message.values["do"] == "undo" else self._store.redo
             try:
@@ -121,11 +127,6 @@ class Rooms:
                 self._states.pop(document)
                 raise
         else:
-            if "based on" in message and message.whole("based on", 0, 2**53) != state.number:
-                raise ConflictError("the drawing was changed elsewhere in the meantime; here it is")
-            key = message.text("key", 64) if "key" in message else None
-            if key and self._store.has(document, key):  # said again after the line broke
-                return self._news(tab, state)
             done = actions.perform(state.sketch, message)
             if done.case == "ignored":
                 return {**self._news(tab, state), "case": done.case, "reason": done.reason}

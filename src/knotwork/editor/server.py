@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import logging
 import secrets
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -26,6 +27,7 @@ from knotwork.editor.rooms import Rooms
 from knotwork.editor.store import Store
 from knotwork.errors import KnotworkError
 
+LOG = logging.getLogger(__name__)
 STATIC = Path(__file__).parent / "static"
 #: bytes of one message, at most
 MESSAGE = 4_000_000
@@ -226,6 +228,9 @@ async def _answer(
         answer = await hear(message)
     except KnotworkError as exc:
         answer = {"error": str(exc)}
+    except Exception:  # a fault of ours: it is written down, and the other messages are answered all the same
+        LOG.exception("a message was not answered")
+        answer = {"error": "Knotwork itself has failed here; nothing was changed"}
     await say({"id": number if isinstance(number, int) else None, **answer})
 
 

@@ -94,9 +94,9 @@ class Store:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             self._db = _opened(path)
-        except sqlite3.DatabaseError as exc:
-            if isinstance(exc, sqlite3.OperationalError) and "lock" not in str(exc) and not path.exists():
-                raise FileError(f"{path}: {exc}") from exc
+        except sqlite3.OperationalError as exc:  # in use, not to be read, a full disk: the file may be sound
+            raise FileError(f"{path}: {exc}") from exc
+        except sqlite3.DatabaseError:
             self.damaged = _set_aside(path)
             self._db = _opened(path)
 

@@ -34,6 +34,8 @@ export class App {
     /** @type {{path: number[][], pressure: number[] | null} | null} */
     this.lastStroke = null;
     this.times = /** @type {number[]} */ ([]);
+    /** @type {Promise<Record<string, any>>} the last change that was asked for */
+    this.last = Promise.resolve({});
     this.token = new URLSearchParams(location.search).get("token") ?? "";
     this.hand = new Hand(this);
     this.documents = new Documents(this);
@@ -99,7 +101,14 @@ export class App {
   }
 
   /** @param {Record<string, any>} message @returns {Promise<Record<string, any>>} */
-  async do(message) {
+  do(message) {
+    const done = this.perform(message);
+    this.last = done;
+    return done;
+  }
+
+  /** @param {Record<string, any>} message @returns {Promise<Record<string, any>>} */
+  async perform(message) {
     const start = performance.now();
     const answer = await this.wire.ask(message);
     if (answer.error) {
@@ -258,7 +267,7 @@ export class App {
   async readAgain(reading) {
     if (!this.lastStroke) return;
     const { path, pressure } = this.lastStroke;
-    if (this.drawing.undo) await this.do({ do: "undo" });
+    await this.history("undo");
     await this.draw(path, pressure, reading);
   }
 
@@ -275,8 +284,15 @@ export class App {
   }
 
   /** @param {"undo" | "redo"} way */
-  history(way) {
-    if (this.drawing[way]) this.do({ do: way });
+  async history(way) {
+    const before = this.last;
+    const turn = (async () => {
+      await before; // so that the revision is known, and an undo said again after the line broke is done once
+      if (this.drawing[way]) return this.perform({ do: way, "based on": this.drawing.revision });
+      return {};
+    })();
+    this.last = turn;
+    return turn;
   }
 
   /** @param {number[]} point */
