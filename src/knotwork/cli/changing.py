@@ -26,6 +26,9 @@ from knotwork.cli.program import (
 from knotwork.cli.terminal import Failure, Progress, Tolerance
 from knotwork.errors import KnotworkError
 
+#: files whose points carry no parametrisation
+TABLES = (".csv", ".tsv", ".txt", ".dat", ".xy", ".asc")
+
 
 @main.command(short_help="Insert knots: more control points, the same shape.")
 @click.argument("file", type=FILE)
@@ -119,16 +122,33 @@ def remove(
     help="Largest error: a length, or as in 0.1% of the extent.",
 )
 @click.option("-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree to this one first.")
+@click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="At equal parameters, or of shapes.")
+@click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), help="What shapes become.")
+@click.option("--effort", type=click.Choice(["fast", "normal", "best"]), default="normal", help="[default: normal]")
+@click.option("--keep", type=click.Choice(["corners", "lines"]), multiple=True, help="What stays; repeatable.")
+@click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
 @flip
 @maybe_output
 @as_json
 def reduce(
-    file: Path, tolerance: Tolerance, degree: int | None, flip: bool, output: Path | None, as_json: bool
+    file: Path,
+    tolerance: Tolerance,
+    degree: int | None,
+    distance: str | None,
+    form: str | None,
+    effort: str,
+    keep: Sequence[str],
+    even_if_longer: bool,
+    flip: bool,
+    output: Path | None,
+    as_json: bool,
 ) -> None:
     """Find splines with few knots within a tolerance of those of FILE.
 
     The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file.
-    The bound in the report is proven: no point is farther, in any coordinate, from where it was.
+    The bound in the report is proven. Drawings and tables carry no parametrisation: their shapes are compared unless
+    --distance or --degree say otherwise. An SVG drawing comes back as it was but for its paths, which get few segments
+    and the shortest text; a table stays a table of fewer points. Other files are compared at equal parameters.
 
     \b
     Examples:
@@ -138,13 +158,54 @@ def reduce(
 
     from knotwork.geometry.boxes import upside_down
 
+    drawn = file.suffix.lower() == ".svg" and (output is None or output.suffix.lower() == ".svg")
+    if drawn and distance != "parametric" and form in (None, "bezier") and degree is None and not flip:
+        _lighter(file, output, tolerance, effort, as_json, even_if_longer)
+        return
+    if distance is None and degree is None and file.suffix.lower() in TABLES:
+        distance = "geometric"
+        form = form or "polyline"
+    how = distance or ("geometric" if form in ("bezier", "polyline") else "parametric")
+
     def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, Any]:
         for axis, given in enumerate(spline.degree):
             spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
-        reduction = kw.reduce(spline, allowed, progress=progress)
+        kept: Any = (list(keep) if how == "geometric" else keep[0]) if keep else None
+        reduction = kw.reduce(
+            spline, allowed, distance=how, form=form or "spline", effort=effort, keep=kept, progress=progress
+        )
         return upside_down(reduction.spline) if flip else reduction.spline, reduction.bound
 
     _change(file, output, (), as_json, change, tolerance, "reducing")
+
+
+def _lighter(
+    file: Path, output: Path | None, tolerance: Tolerance, effort: str, as_json: bool, even_if_longer: bool
+) -> None:
+    """Reduce a drawing in place, and say what became of it."""
+    from knotwork.files.lighter import lighter
+
+    if output:
+        require_writable(output)
+    document = kw.open(file)
+    allowed = tolerance.of(kw.read(file))
+    start = time.perf_counter()
+    found = lighter(document, allowed, effort=effort)
+    data, rounded = found.document.bytes(even_if_longer=even_if_longer)
+    seconds = time.perf_counter() - start
+    bound = found.bound + rounded
+    if output:
+        found.document.write(output, even_if_longer=even_if_longer)
+    sizes = (file.stat().st_size, len(data))
+    if as_json:
+        told = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed, "bound": bound}
+        print_json(told | {"distance": "geometric", "segments": list(found.segments), "bytes": list(sizes)})
+        return
+    before, after = found.segments
+    click.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g} between shapes")
+    click.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
+    click.echo(f"no point is farther than {report.upward(bound):.6g} from where it was: proven, rounding included")
+    click.echo(f"written to {output}" if output else "nothing written (no --output)")
 
 
 @main.command(short_help="Write splines in Bézier form.")

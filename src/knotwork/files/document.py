@@ -58,13 +58,13 @@ class Document:
         Those that are `fixed` in their places stay as they are: circles and rectangles of a drawing, say.
         """
         free = [i for i, place in enumerate(self.places) if not place.fixed]
-        return self._with({i: f(self.splines[i]) for i in free})
+        return self.with_splines({i: f(self.splines[i]) for i in free})
 
     def replace(self, index: int, spline: Spline) -> Document:
         """Return the document with one spline replaced."""
         if not 0 <= index < len(self.splines):
             raise ParameterError(f"spline {index} given; the document holds {len(self.splines)}")
-        return self._with({index: spline})
+        return self.with_splines({index: spline})
 
     def rounding(self, accuracy: Mapping[int, float]) -> Document:
         """Return the document with numbers that may be rounded when it is written.
@@ -76,7 +76,8 @@ class Document:
         """
         return replace(self, _accuracy={**self._accuracy, **accuracy})
 
-    def _with(self, changed: Mapping[int, Spline]) -> Document:
+    def with_splines(self, changed: Mapping[int, Spline]) -> Document:
+        """Return the document with some splines replaced, given by their numbers."""
         for i, spline in changed.items():
             if not isinstance(spline, Spline):
                 raise ParameterError(f"{type(spline).__name__} given for spline {i}; expected a Spline")

@@ -31,6 +31,10 @@ from knotwork.spline import Spline
 NEAR = 1e-6
 
 
+#: pieces become lines that are off by less than this part of the last digit
+STRAIGHT = 0.5
+
+
 class Outline(NamedTuple):
     """An element that is drawn."""
 
@@ -155,35 +159,47 @@ def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) 
     text, pen = "", Pen((0, 0), "", None, "")
     worst = []
     for subpath, i in zip(outline.subpaths, outline.splines, strict=True):
-        way, off = subpath_of(changed[i], subpath.closed) if i in changed else (subpath, 0.0)
+        within = STRAIGHT / 2 * 10.0**-encoder.digits if encoder.digits is not None else 0.0
+        way, off = subpath_of(changed[i], subpath.closed, within) if i in changed else (subpath, 0.0)
         more, pen = encoder.subpath(way, pen, first=not text)
         worst.append(off if encoder.digits is None else off + moved(way, encoder))
         text = joined(text, more)
     return text, worst
 
 
-def subpath_of(spline: Spline, closed: bool) -> tuple[Subpath, float]:
-    """Return a curve as a subpath, and how far that is from it; pieces that are straight lines become lines."""
+def subpath_of(spline: Spline, closed: bool, within: float = 0.0) -> tuple[Subpath, float]:
+    """Return a curve as a subpath, and how far that is from it; pieces within a distance of a line become lines."""
     nets, off = pieces_of(spline, "the new spline", NEAR)
     if (nets[1:, 0] != nets[:-1, -1]).any():
         raise FileError("the new spline has a jump; expected a curve without one, for one subpath")
     path = Subpath(_point(nets[0, 0]))
+    bent = 0.0
     for net in nets:
-        if is_straight(net):
+        away = from_line(net)
+        if away <= within + 4 * np.finfo(float).eps * np.abs(net).max():
             path.line(_point(net[-1]))
+            bent = max(bent, away)
         else:
             path.segments.append(tuple(_point(p) for p in net[1:]))
     if closed:
         path.close()
-    return path, off
+    return path, off + bent
 
 
-def is_straight(net: Array) -> bool:
-    """Tell whether a piece is a line run through at even speed, to the last bit or as good as that."""
-    n = len(net) - 1
-    share = np.arange(n + 1)[:, None] / n
-    even = (1 - share) * net[0] + share * net[-1]
-    return bool(np.abs(net - even).max() <= 4 * np.finfo(float).eps * np.abs(net).max())
+def from_line(net: Array) -> float:
+    """Return how far a piece is from the line from end to end at most; infinity if it does not run straight along it.
+
+    Where the feet of its points follow one another, so do those of the curve, and no point of it is farther off than
+    the farthest of them.
+    """
+    chord = net[-1] - net[0]
+    length = float(np.hypot(*chord))
+    if length == 0:
+        return float("inf") if np.abs(net - net[0]).max() > 0 else 0.0
+    feet = (net - net[0]) @ chord / length
+    if (np.diff(feet) < 0).any():
+        return float("inf")
+    return float(np.abs((net - net[0]) @ np.array([-chord[1], chord[0]]) / length).max())
 
 
 def _point(p: Array) -> tuple[float, float]:
