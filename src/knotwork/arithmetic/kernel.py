@@ -34,6 +34,8 @@ MODES = ("auto", "always", "never")
 LOADING_PAYS = 0.4
 #: seconds of plain work per array element, roughly: what a kernel is expected to cost before it is timed
 PER_ELEMENT = 1e-6
+#: how much more a search costs per element: it goes over them again and again
+SEARCH = 10_000
 #: dimensions up to this one are known to the compiler, which unrolls the loops over them
 UNROLLED = 5
 
@@ -123,7 +125,7 @@ class Kernel:
         if mode == "never":
             with np.errstate(all="ignore"):
                 return self.plain(*args)
-        expected = PER_ELEMENT * _elements(args)
+        expected = PER_ELEMENT * _elements(args) * (1 if self.options["forceinline"] else SEARCH)
         if mode == "always" or "numba" in sys.modules or _spent + expected > LOADING_PAYS:
             return self.compiled(*args)
         start = time.perf_counter()
