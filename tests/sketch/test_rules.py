@@ -75,9 +75,25 @@ def test_a_light_stroke_pulls_half_as_far():
 
 def test_a_far_stroke_begins_a_new_curve_and_one_that_is_near_and_aslant_is_ignored():
     assert stroke(drawing(), [[20, 20], [22, 21]]).case == "new"
-    aslant = stroke(drawing(), [[8, 0.1], [8, 2]], reach=0.5)
+    aslant = stroke(drawing(), [[8, 2], [8, 0.1]], reach=0.5)
     assert (aslant.case, aslant.curve) == ("ignored", -1)
     assert stroke(drawing(), [[3, 3], [3, 3]]).case == "ignored"
+
+
+def test_a_stroke_that_begins_a_little_late_crosses_all_the_same():
+    result = stroke(drawing(), [[8, 0.1], [8, 2]], reach=0.5)
+    assert result.case == "insert"
+    assert polygon(result) == [[0, 0], [2, 0], [4, 0], [5, 3], [6, 0], [8, 2], [10, 0]]
+    assert stroke(drawing(), [[8, 0.6], [8, 2]], reach=0.5).case == "new"
+
+
+def test_a_stroke_from_beyond_an_end_continues_the_curve():
+    after = stroke(drawing(), [[10.3, 0.1], [11, 3]], reach=0.5)
+    assert after.case == "extend"
+    assert polygon(after) == [*POLYGON.tolist(), [11, 3]]
+    before = stroke(drawing(), [[-0.3, 0.1], [-1, 3]], reach=0.5)
+    assert before.case == "extend"
+    assert polygon(before) == [[-1, 3], *POLYGON.tolist()]
 
 
 def test_a_stroke_acts_on_the_curve_that_it_crosses_first():

@@ -71,6 +71,17 @@ def extend_or_move(head: Array, polygon: Array, closed: bool, met: Crossing, sid
     return Change("move", first, last, vertices, reason)
 
 
+def from_an_end(line: Straight, polygon: Array, reach: float) -> Change | None:
+    """Return what a stroke does that begins within reach of an end of an open polygon: it goes on there (case 3)."""
+    away = np.hypot(*(polygon[[0, -1]] - line.tail).T)
+    if away.min() > reach:
+        return None
+    count, at_start = len(polygon), away[0] < away[1]
+    first, last = (-1, 0) if at_start else (count - 1, count)
+    reason = f"The stroke begins at the {'start' if at_start else 'end'}: the polygon goes on there."
+    return Change("extend", first, last, line.head[None], reason)
+
+
 def cut(polygon: Array, closed: bool, met: list[Crossing]) -> Change:
     """Case 5: the first and last crossings become vertices, those between them go (Figs. 7.9, 7.12).
 

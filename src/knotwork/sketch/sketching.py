@@ -199,7 +199,7 @@ def _straight_stroke(sketch: Sketch, line: Straight, weight: float, wait: bool, 
     met = [(c.when, i) for i, polygon in enumerate(polygons) for c in crossings(line, *polygon)]
     if met:
         return _crossing_stroke(sketch, min(met)[1], line, wait)
-    return _stroke_beside(sketch, line, weight, reach)
+    return _stroke_beside(sketch, line, weight, reach, wait)
 
 
 def _crossing_stroke(sketch: Sketch, index: int, line: Straight, wait: bool) -> Stroke:
@@ -214,18 +214,27 @@ def _crossing_stroke(sketch: Sketch, index: int, line: Straight, wait: bool) -> 
     return _carried_out(sketch, index, change)
 
 
-def _stroke_beside(sketch: Sketch, line: Straight, weight: float, reach: float) -> Stroke:
-    """Follow case 1 on the nearest curve, or begin a new one where none is near."""
+def _stroke_beside(sketch: Sketch, line: Straight, weight: float, reach: float, wait: bool) -> Stroke:
+    """Follow case 1 on the nearest curve, or begin a new one where none is near.
+
+    A hand that begins a little late means to cross: a stroke that does not run along the polygon and begins within
+    reach of it is lengthened backwards by the reach, or joined to the end that it begins at.
+    """
     away = [(*distance(line, c.points, c.space.periodic), i) for i, c in enumerate(sketch.curves)]
     if away and min(away)[0] <= reach:
         _, segment, index = min(away)
         curve = sketch.curves[index]
         closed = curve.space.periodic
-        if not rules.runs_beside(line, curve.points, closed, segment):
-            return Stroke(sketch, "ignored", -1, "The stroke is near a curve, but neither meets it nor runs along it.")
-        change = rules.near(line, curve.points, closed, reach, weight)
+        beside = rules.runs_beside(line, curve.points, closed, segment)
+        change = rules.near(line, curve.points, closed, reach, weight) if beside else None
         if change is None:
-            return Stroke(sketch, "ignored", -1, "The stroke runs along a segment, but no vertex is near it.")
+            longer = Straight(line.tail - reach / line.length * line.direction, line.head)
+            if crossings(longer, curve.points, closed):
+                return _crossing_stroke(sketch, index, longer, wait)
+            change = None if closed else rules.from_an_end(line, curve.points, reach)
+        if change is None:
+            reason = "The stroke is near a curve, but neither meets it nor runs along it near a vertex."
+            return Stroke(sketch, "ignored", -1, reason)
         return _carried_out(sketch, index, change)
     curve = clamped(np.stack([line.tail, line.head]), sketch.degree)
     return Stroke(

@@ -148,13 +148,15 @@ export class Hand {
     if (event.shiftKey) {
       this.path = [this.start, this.snapped(this.place(event))];
       this.pressure &&= [event.pressure, event.pressure];
-    } else
-      for (const each of event.getCoalescedEvents?.() ?? [event]) {
+    } else {
+      const between = event.getCoalescedEvents?.() ?? [];
+      for (const each of between.length ? between : [event]) {
         const p = this.place(each), q = this.path[this.path.length - 1];
         if (Math.hypot(p[0] - q[0], p[1] - q[1]) < 1) continue;
         this.path.push(p);
         this.pressure?.push(each.pressure);
       }
+    }
     this.app.inked();
   }
 

@@ -1,0 +1,243 @@
+"""The editor in a real browser: what a hand, a pen, a finger and the keys do, and that nothing is lost."""
+
+import shutil
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+import knotwork as kw
+from editor.serving import editor
+
+for name in ("starlette", "uvicorn", "websockets"):
+    pytest.importorskip(name, reason="the editor is not installed")
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium"),
+    pytest.mark.xdist_group("browser"),
+]
+
+KNOTS = [0, 0, 0, 0, 0.3, 0.5, 0.65, 0.7, 0.75, 0.8, 0.9, 1, 1, 1, 1]
+POINTS = [[0, 0], [1, 2], [3, 3], [5, 2.5], [7, 1], [9, 1], [10.5, 3], [12, 4], [14, 3.5], [15, 2], [16, 0]]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with playwright.sync_playwright() as driver:
+        started = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    with editor(tmp_path_factory.mktemp("store") / "drawings.sqlite3") as running:
+        yield running
+
+
+class Sheet:
+    """The page, as a person meets it; and what it holds, to compare."""
+
+    def __init__(self, page, url):
+        self.page = page
+        self.errors = []
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.set_default_timeout(12_000)
+        page.goto(url)
+        self.ready()
+
+    def ready(self):
+        self.until("window.app && app.drawing.revision >= 0")
+
+    def until(self, expression, arg=None, seconds=8):
+        """Wait until something is true of the page. Its policy forbids Playwright's own way, which is to evaluate."""
+        end = time.monotonic() + seconds
+        while not self.page.evaluate(expression, arg):
+            assert time.monotonic() < end, f"{expression} does not come true: {self.page.inner_text('#said')}"
+            self.page.wait_for_timeout(15)
+
+    def begin(self):
+        """A new drawing."""
+        before = self.page.evaluate("app.documents.current")
+        self.page.keyboard.press("Control+o")
+        self.page.click("#new")
+        self.until("before => app.documents.current !== before && app.drawing.revision === 0", arg=before)
+        if self.page.evaluate("document.querySelector('#drawings').open"):
+            self.page.keyboard.press("Escape")
+
+    @contextmanager
+    def change(self):
+        """Wait for the next revision."""
+        before = self.revision
+        yield
+        self.until("before => app.drawing.revision !== before", arg=before)
+
+    @property
+    def revision(self):
+        return self.page.evaluate("app.drawing.revision")
+
+    @property
+    def curves(self):
+        return self.page.evaluate("app.drawing.curves.map(c => ({degree: c.degree, knots: c.knots, points: c.points}))")
+
+    def draw(self, a, b, steps=8):
+        """Draw a straight stroke with the mouse, in pixels of the sheet."""
+        self.page.mouse.move(*a)
+        self.page.mouse.down()
+        for i in range(1, steps + 1):
+            self.page.mouse.move(*(np.array(a) + (np.array(b) - a) * i / steps).tolist())
+        self.page.mouse.up()
+
+    def at(self, point):
+        """Where a point of the plane is on the screen."""
+        return self.page.evaluate(
+            """p => { const box = app.sheet.getBoundingClientRect(), [x, y] = app.camera.toScreen(p);
+            return [x + box.left, y + box.top]; }""",
+            point,
+        )
+
+    def draw_between(self, *plane):
+        with self.change():
+            self.draw(*map(self.at, plane))
+
+    def bring(self, curve, folder):
+        """Open a file with one curve by the page's own field for files."""
+        kw.write(folder / "curve.json", [curve])
+        with self.change():
+            self.page.set_input_files("#file", folder / "curve.json")
+        self.until("app.drawing.curves.length === 1")
+        self.page.click("#zoom")
+
+
+@pytest.fixture
+def sheet(browser, served):
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    opened = Sheet(context.new_page(), served.url)
+    opened.begin()
+    yield opened
+    context.close()
+    assert opened.errors == []
+
+
+def test_an_empty_sheet_says_what_to_do_and_a_stroke_is_a_curve(sheet):
+    assert sheet.page.is_visible("#hint")
+    with sheet.change():
+        sheet.draw((300, 500), (450, 300))
+    (curve,) = sheet.curves
+    assert curve["degree"] == 1
+    with sheet.change():
+        sheet.draw((405, 330), (620, 280))
+    assert [c["degree"] for c in sheet.curves] == [2]
+    assert sheet.page.inner_text("#rule") == "Extend"
+    assert not sheet.page.is_visible("#hint")
+
+
+def test_the_session_of_the_book_through_the_page(sheet, tmp_path):
+    """§7.6: a vertex brings the knot .675; a corner cut off brings .66667 and .683333 for it."""
+    sheet.bring(kw.curve(POINTS, 3, KNOTS), tmp_path)
+    sheet.draw_between([7.8, 1.4], [8, 0])
+    assert sheet.page.inner_text("#rule") == "Insert"
+    assert np.allclose(sheet.curves[0]["knots"][6:9], [0.65, 0.675, 0.7], atol=1e-12)
+    sheet.draw_between([7.2, 0.6], [8.8, 0.6])
+    assert sheet.page.inner_text("#rule") == "Cut"
+    knots = sheet.curves[0]["knots"]
+    assert np.allclose(knots[6:10], [0.65, 0.66667, 0.683333, 0.7], atol=5e-6)
+    assert [*knots[:7], *knots[9:]] == KNOTS
+    shown = sheet.page.eval_on_selector_all("#knotline .knot title", "marks => marks.map(m => m.textContent)")
+    assert {"0.666667", "0.683333"} <= set(shown)
+
+
+def test_undo_redo_and_reload(sheet):
+    for a, b in (((300, 500), (450, 300)), ((405, 330), (620, 280)), ((600, 260), (700, 480))):
+        with sheet.change():
+            sheet.draw(a, b)
+    drawn = sheet.curves
+    with sheet.change():
+        sheet.page.keyboard.press("Control+z")
+    assert len(sheet.curves[0]["points"]) == 3
+    with sheet.change():
+        sheet.page.keyboard.press("Control+Shift+Z")
+    assert sheet.curves == drawn
+    sheet.page.reload()
+    sheet.ready()
+    assert sheet.curves == drawn
+    for left in (3, 2):
+        with sheet.change():
+            sheet.page.click("#undo")
+        assert len(sheet.curves[0]["points"]) == left
+
+
+def test_a_drawing_by_keys_alone(sheet):
+    press = sheet.page.keyboard.press
+    sheet.page.focus("#sheet")
+    for _ in range(5):
+        with sheet.change():
+            press("a")
+    before = sheet.curves[0]["points"]
+    assert len(before) == 5
+    press("Tab")
+    press("Tab")
+    with sheet.change():
+        press("Shift+ArrowUp")
+    after = sheet.curves[0]["points"]
+    assert after[1][1] > before[1][1]
+    assert [after[i] for i in (0, 2, 3, 4)] == [before[i] for i in (0, 2, 3, 4)]
+    with sheet.change():
+        press("4")
+    assert sheet.curves[0]["degree"] == 4
+    with sheet.change():
+        press("Delete")
+    with sheet.change():
+        press("c")
+    with sheet.change():
+        press("Control+z")
+    press("?")
+    assert sheet.page.is_visible("#keys")
+    press("Escape")
+    assert not sheet.page.is_visible("#keys")
+
+
+def test_two_fingers_move_the_sheet_and_draw_nothing(browser, served):
+    context = browser.new_context(viewport={"width": 820, "height": 1180}, has_touch=True)
+    sheet = Sheet(context.new_page(), served.url)
+    sheet.begin()
+    scale = sheet.page.evaluate("app.camera.scale")
+    touch = context.new_cdp_session(sheet.page)
+    for kind, spread in (("Start", 50), ("Move", 70), ("Move", 100), ("End", None)):
+        fingers = (
+            [] if spread is None else [{"x": 400 - spread, "y": 500, "id": 0}, {"x": 400 + spread, "y": 500, "id": 1}]
+        )
+        touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": fingers})
+    assert sheet.page.evaluate("app.camera.scale") > 1.5 * scale
+    assert sheet.curves == []
+    assert sheet.errors == []
+    context.close()
+
+
+@pytest.mark.parametrize("kind", ["JSON", "NPZ", "SVG"])
+def test_what_is_taken_away_is_read_again(sheet, tmp_path, kind):
+    curve = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    sheet.bring(curve, tmp_path)
+    if not sheet.page.is_visible("#exports"):
+        sheet.page.click("#panel-toggle")
+    with sheet.page.expect_download() as taken:
+        sheet.page.get_by_role("button", name=kind, exact=True).click()
+    target = tmp_path / f"taken.{kind.lower()}"
+    taken.value.save_as(target)
+    (back,) = kw.read(target)
+    flip = [1, -1] if kind == "SVG" else [1, 1]
+    assert np.allclose(back.points * flip, curve.points, rtol=0, atol=1e-12)
+
+
+def test_two_tabs_show_the_same(sheet, served):
+    document = sheet.page.evaluate("app.documents.current")
+    other = Sheet(sheet.page.context.new_page(), served.url)
+    other.page.evaluate("document => app.documents.open(document)", document)
+    other.until("document => app.documents.current === document", arg=document)
+    with other.change(), sheet.change():
+        sheet.draw((300, 500), (450, 300))
+    assert other.curves == sheet.curves
+    other.page.close()
