@@ -198,7 +198,10 @@ def test_plain_and_compiled_agree_on_removal(both, dtype):
         kw.remove(curve, curve.space.breaks[1:-1], tolerance=0.3)
     for degree in (1, 3):
         line = kw.curve(points(rng, dtype, 40, 2).cumsum(axis=0), degree)
-        assert len(kw.reduce(line, 0.5).removed)
+        assert len(kw.reduce(line, 0.5, method="lyche-morken").removed)
+        for closed in (False, True):
+            few = kw.curve(points(rng, dtype, 12, 2).cumsum(axis=0), degree, periodic=closed)
+            assert len(kw.reduce(few, 0.5, effort="fast").removed)
     net = kw.surface(points(rng, dtype, 9, 4, 2))
     kw.remove(net, net.spaces[0].breaks[1:-1], tolerance=1.0)
     kw.reduce(net, 0.5, effort="best")

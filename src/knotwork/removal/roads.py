@@ -42,6 +42,8 @@ class Manner(NamedTuple):
     passes: int
 
 
+#: curves of more control points than this start from few knots only
+FROM_ALL = 2000
 #: the ways that each effort tries; the result with the fewest knots counts
 MANNERS = {
     "fast": (Manner(1, 2),),
@@ -312,7 +314,8 @@ def reduced(
 ) -> tuple[Trial, Array] | None:
     """Return the fewest knots that the roads of an effort leave, or None if rounding lets none of them be proven."""
     roads = Roads(original, candidates)
-    limit, manners = roads.limit(), MANNERS[effort]
+    limit, few = roads.limit(), original.space.dimension <= FROM_ALL
+    manners = [manner for manner in MANNERS[effort] if few or manner.slack > 0]
     best: tuple[Trial, Array] | None = None
     for k, manner in enumerate(manners):
         for shrink in (1.0, 1 - 2.0**-10, 0.75, 0.25):
