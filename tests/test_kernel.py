@@ -278,7 +278,7 @@ def test_plain_and_compiled_agree_on_shapes(both):
     kw.distance_bound(a, kw.curve(line[:7] + 0.1, 2), [0.5, 0.5])
     edges = np.stack([line[:-1], line[1:]], axis=1)
     for effort, closed in (("normal", True), ("best", False)):
-        reduce_bezier(edges, [0, 12, 29], [0.3, 0.2], closed=closed, angle=170.0, keep=[5], effort=effort)
+        reduce_bezier(edges, [0, 12, 29], [0.3, 0.2], closed=closed, angle=170.0, keep=[5], lines=True, effort=effort)
 
 
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone

@@ -147,6 +147,66 @@ def test_corners_and_kept_points_are_exact():
     assert {tuple(coast()[i]) for i in (20, 33)} <= {tuple(p) for p in kept.nets[:, 0]}
 
 
+def test_single_pieces_between_corners_stay_bit_for_bit():
+    """Of an outline of arcs and lines that meet in corners."""
+    nets = np.array(
+        [
+            [[0, 0], [1 / 3, 0.1], [2 / 3, 0.1], [1, 0]],
+            [[1, 0], [1.1, 0.3], [1.1, 0.7], [1, 1]],
+            [[1, 1], [0.7, 1], [0.3, 1], [0.1, 1]],
+            [[0.1, 1], [0.08, 1], [0.02, 1], [0, 1]],
+            [[0, 1], [0, 0.7], [0, 0.2], [0, 0]],
+        ]
+    )
+    result, nets = one(nets, 0.01, closed=True, angle=30.0)
+    assert len(result.nets) == 4
+    for net in nets[[0, 1, 4]]:
+        assert any((net == new).all() for new in result.nets) or any((net[::-1] == new).all() for new in result.nets)
+    (top,) = [new for new in result.nets if (new[:, 1] == 1).all()]
+    assert sorted(top[[0, 3], 0]) == [0, 1]
+
+
+def test_lines_stay_straight():
+    """A line that is joined without a corner, in two pieces; without the option its ends go."""
+    t = np.linspace(0, 1, 9)
+    arc = np.stack([np.sin(t * np.pi), 1 - np.cos(t * np.pi)], axis=1)
+    points = np.concatenate([[[-3, 0], [-1.5, 0]], arc, [[-3, 2]]])
+    nets = edges(points)
+    a, b = nets[:, 0], nets[:, 1]
+    nets = np.stack([a, (2 * a + b) / 3, (a + 2 * b) / 3, b], axis=1)
+    result, _ = one(nets, 0.1, lines=True)
+    assert 3 <= len(result.nets) < len(nets)
+    assert (result.nets[0][:, 1] == 0).all()
+    assert tuple(result.nets[0][3]) == (0, 0)
+    assert (result.nets[-1][:, 1] == result.nets[-1][0, 1]).all()
+
+
+def count_crossings(nets):
+    """Return how many pairs of chords of a curve cross, by brute force in NumPy."""
+    t = np.linspace(0, 1, 10, endpoint=False)[:, None]
+    P = np.concatenate(
+        [(1 - t) ** 3 * a + 3 * t * (1 - t) ** 2 * b + 3 * t**2 * (1 - t) * c + t**3 * d for a, b, c, d in nets]
+    )
+    A, B = P[:-1], P[1:]
+
+    def sides(P, Q, R):
+        return np.sign(
+            (Q[..., 0] - P[..., 0]) * (R[..., 1] - P[..., 1]) - (Q[..., 1] - P[..., 1]) * (R[..., 0] - P[..., 0])
+        )
+
+    a, b, c, d = A[:, None], B[:, None], A[None], B[None]
+    crossed = (sides(a, b, c) * sides(a, b, d) < 0) & (sides(c, d, a) * sides(c, d, b) < 0)
+    return int(np.triu(crossed, 2).sum())
+
+
+def test_few_new_crossings():
+    nets = edges(coast())
+    allowed, _ = one(nets, 2.0, closed=True, crossings="allow")
+    avoided, _ = one(nets, 2.0, closed=True)
+    assert count_crossings(allowed.nets) > 10
+    assert count_crossings(avoided.nets) <= 4
+
+
 def test_three_dimensions_and_a_tolerance_for_each():
     t = np.linspace(0, 1, 200)
     track = np.stack([100 * t, 20 * np.sin(9 * t), 0.1 * np.cos(30 * t)], axis=1)
@@ -182,8 +242,8 @@ def test_many_curves_are_as_one_by_one():
 def test_few_segments_on_a_coast():
     """As few as the method is known for."""
     ring = coast()
-    for tolerance, most in ((2.0, 122), (5.0, 53)):
-        result, nets = one(edges(ring), tolerance, closed=True)
+    for tolerance, effort, most in ((2.0, "normal", 122), (5.0, "normal", 53), (2.0, "best", 119), (2.0, "fast", 130)):
+        result, nets = one(edges(ring), tolerance, closed=True, effort=effort, crossings="allow")
         assert len(nets) == len(ring) - 1
         assert 0 < len(result.nets) <= most
         assert result.bound[0] <= tolerance
@@ -202,6 +262,8 @@ def test_bad_input():
             one(nets, tolerance)
     with pytest.raises(ParameterError, match="effort"):
         one(nets, 1.0, effort="more")
+    with pytest.raises(ParameterError, match="crossings"):
+        one(nets, 1.0, crossings="some")
     with pytest.raises(PointError, match="NaN"):
         one(np.full((2, 2, 2), np.nan), 1.0)
     with pytest.raises(PointError, match="weights"):

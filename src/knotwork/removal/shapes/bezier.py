@@ -15,10 +15,15 @@ from knotwork.removal.shapes import certificate, corners
 from knotwork.removal.shapes.samples import counted
 from knotwork.removal.shapes.search import Effort, Found, Search
 
+#: all, where removal is for results of any size
+ALL = 1 << 40
+_NORMAL = Effort(width=2, steps=16, few=0, few_curved=32, rounds=6, backward=False, simple=True)
+_BEST = _NORMAL._replace(steps=24, few=ALL, few_curved=ALL)
+#: ways to search, of which the one that finds least counts
 EFFORTS = {
-    "fast": Effort(width=1, steps=16, reach=0, rounds=6),
-    "normal": Effort(width=2, steps=16, reach=0, rounds=6),
-    "best": Effort(width=2, steps=24, reach=3, rounds=6),
+    "fast": (_NORMAL._replace(width=1, few_curved=0),),
+    "normal": (_NORMAL,),
+    "best": (_BEST, _BEST._replace(width=3), _BEST._replace(backward=True)),
 }
 #: a closed curve is opened where it turns most at this many times the tolerance
 SCALE = 4.0
@@ -46,8 +51,8 @@ class Pieces(NamedTuple):
 
 
 def reduce_bezier(
-    nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, keep: Any = (),
-    effort: str = "normal", rational: bool = False,
+    nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, lines: bool = False,
+    keep: Any = (), effort: str = "normal", crossings: str = "none-new", rational: bool = False,
 ) -> Pieces:  # fmt: skip
     """Return few cubic pieces within a distance of each curve.
 
@@ -65,9 +70,14 @@ def reduce_bezier(
     angle : float, optional
         Joints where the tangent turns by more than that, in degrees, are corners: they stay exactly. None: there are
         no corners.
+    lines : bool
+        Whether straight runs longer than four tolerances stay straight, with the ends they have.
     keep : array_like of int
         Nets whose first point stays, exactly, as a joint.
     effort : {"fast", "normal", "best"}
+    crossings : {"none-new", "allow"}
+        Whether to avoid self-crossings of plane curves that they do not have. Looked for in chords of neighbouring
+        pieces: not a proof.
     rational : bool
 
     Returns
@@ -93,6 +103,9 @@ def reduce_bezier(
     unit = np.broadcast_to(np.asarray(tolerance, np.float64), (d,))
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
+    if crossings not in ("none-new", "allow"):
+        raise ParameterError(f"crossings {crossings!r} given; expected 'none-new' or 'allow'")
+    how = tuple(e._replace(simple=crossings == "none-new") for e in EFFORTS[effort])
     if not np.isfinite(unit).all() or (unit < 0).any():
         raise ParameterError(f"tolerance {tolerance} given; expected finite numbers from 0 on")
     if not np.isfinite(nets).all():
@@ -114,10 +127,12 @@ def reduce_bezier(
     a, b = np.zeros(d), np.zeros(d)
     if angle is not None:
         corners.corners(F, at, per, math.cos(math.radians(angle)), hard, a, b)
+    if lines:
+        corners.lines(F, at, per, hard, a, b)
     if len(keep):
         _keep(hard, np.asarray(keep, np.int64), at, start, closed)
     metric, reach = (1 / unit**2, 1.0) if each else (np.ones(d), float(unit[0]))
-    found = _search(F, at, hard, unit, metric, reach, rational, EFFORTS[effort])
+    found = _search(F, at, hard, unit, metric, reach, rational, how)
     G, where = _joined([c.G for c in found])
     u, path = _joined([c.u for c in found])
     s, _ = _joined([c.s for c in found])
@@ -188,7 +203,14 @@ def _keep(hard: Array, keep: Array, at: Array, start: Array, closed: Array) -> N
 
 
 def _search(
-    F: Array, at: Array, hard: Array, unit: Array, metric: Array, reach: float, rational: bool, effort: Effort
+    F: Array,
+    at: Array,
+    hard: Array,
+    unit: Array,
+    metric: Array,
+    reach: float,
+    rational: bool,
+    efforts: tuple[Effort, ...],
 ) -> list[Found]:
     """Search for pieces near each curve; none where there are none."""
     q, d, sizes = F.shape[1] - 1, len(unit), np.diff(at)
@@ -202,7 +224,9 @@ def _search(
     none = Found(np.zeros((0, 4, F.shape[2])), np.zeros(0), np.zeros(0), 0.0)
     result = []
     for i, (lo, hi) in enumerate(itertools.pairwise(at.tolist())):
-        found = search.curve(F[lo:hi], hard[lo + i : hi + i + 1], target[i], allowed[i], effort) if allowed[i] else None
+        found = (
+            search.fewest(F[lo:hi], hard[lo + i : hi + i + 1], target[i], allowed[i], efforts) if allowed[i] else None
+        )
         result.append(found or none)
     return result
 

@@ -6,6 +6,10 @@ import math
 
 from knotwork.arithmetic.kernel import kernel
 
+#: a straight run of that many units is a line
+LONG = 4.0
+#: part of the first piece by which the others may be off its line, for the rounding of their points
+LEVEL = 1e-9
 #: pieces looked at on each side of a joint, at most
 LOOK = 64
 
@@ -86,3 +90,51 @@ def sharpest(F, at, per, closed, reach, starts, a, b):
                 if cosine < least:
                     least = cosine
                     starts[curve] = i - lo
+
+
+@kernel(inline=False)
+def bent(net, far, per, start, along):
+    """Return how far the control points of a net are off the line from `start`, in the direction `along`, by length.
+
+    Infinity if they do not run onward. far is how far along the line the net begins; returned too is where it ends.
+    """
+    size = 0.0
+    for c in range(len(along)):
+        size += along[c] * along[c]
+    off = 0.0
+    for i in range(len(net)):
+        way = 0.0
+        for c in range(len(along)):
+            way += (net[i, c] - start[c]) * per[c] * along[c]
+        way = way / size
+        away = 0.0
+        for c in range(len(along)):
+            side = (net[i, c] - start[c]) * per[c] - way * along[c]
+            away += side * side
+        off = max(off, away / size)
+        if way < far - LEVEL:
+            return math.inf, way
+        far = max(way, far)
+    return math.sqrt(off), far
+
+
+@kernel(inline=False)
+def lines(F, at, per, hard, a, b):
+    """Mark the ends of straight runs that are longer than LONG units."""
+    for curve in range(len(at) - 1):
+        i, hi = at[curve], at[curve + 1]
+        while i < hi:
+            size = 0.0
+            for c in range(len(a)):
+                a[c] = F[i, 0, c]
+                b[c] = (F[i, F.shape[1] - 1, c] - a[c]) * per[c]
+                size += b[c] * b[c]
+            far, j = 0.0, i
+            while j < hi and size > 0:
+                off, end = bent(F[j], far, per, a, b)
+                if off > LEVEL:
+                    break
+                far, j = end, j + 1
+            if j > i and far * math.sqrt(size) > LONG:
+                hard[i + curve] = hard[j + curve] = 1
+            i = max(j, i + 1)

@@ -58,6 +58,8 @@ class Room(NamedTuple):
     R: Array
     #: points of a net of f
     level: Array
+    #: a polyline
+    chords: Array
     #: a tuple as long as a point
     D: Any
 
@@ -75,5 +77,5 @@ def room(count: int, d: int, degree: int = 3) -> Room:
         np.zeros((2, unknowns, band)), np.zeros((2, unknowns)), np.zeros((unknowns, band)), np.zeros(unknowns),
         np.zeros((3, WINDOW, 4, d)), np.zeros((3, count)), np.zeros(count), np.zeros(count, np.int64),
         np.zeros(WINDOW + 1), np.zeros(d), np.zeros((4, d)), np.zeros(4), np.zeros((3, 3)), np.zeros((3, d)),
-        np.zeros((degree + 1, d + 1)), extent(d),
+        np.zeros((degree + 1, d + 1)), np.zeros((512, d)), extent(d),
     )  # fmt: skip

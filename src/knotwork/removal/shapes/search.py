@@ -9,15 +9,18 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes import certificate
-from knotwork.removal.shapes.greedy import greedy
+from knotwork.removal.shapes.greedy import as_cubic, greedy, whole
 from knotwork.removal.shapes.matching import Pair, path_square
 from knotwork.removal.shapes.rematching import refined
+from knotwork.removal.shapes.removing import removed
 from knotwork.removal.shapes.repair import forced, interpolated, repaired
 from knotwork.removal.shapes.room import room, samples
 from knotwork.removal.shapes.samples import finely, merged, point
 
 #: how often a curve is begun anew, with what was learned about its samples
 ATTEMPTS = 3
+#: part of its length by which a line may be off, for the rounding of its points
+LEVEL = 1e-9
 
 
 class Effort(NamedTuple):
@@ -27,10 +30,15 @@ class Effort(NamedTuple):
     width: int
     #: steps of a fit
     steps: int
-    #: joints are tried out of windows of that many pieces on each side; 0: not at all
-    reach: int
+    #: results of at most that many pieces are tried without each joint; and those of curves, not polylines
+    few: int
+    few_curved: int
     #: rounds of repair
     rounds: int
+    #: whether the curve is run through backward
+    backward: bool
+    #: whether new self-crossings are avoided
+    simple: bool
 
 
 class Found(NamedTuple):
@@ -69,13 +77,35 @@ class Search:
                 inside = fine.hard[1:end]
                 inside[inside == 0] = 2
             last = int(merged(fine, end, F.shape[1] == 2, self.samples, self.room))
-            count = int(greedy(self.G, self.samples, last, self.room, effort.width, effort.steps, most))
+            count = int(greedy(F, self.per, self.G, self.samples, last, self.room, effort, most))
             if count > most:
                 return None
+            if 1 < count <= (effort.few if F.shape[1] == 2 else effort.few_curved):
+                count = int(removed(self.G, self.samples, last, count, self.room, effort.simple))
             found, end = self._certified(F, end, last, count, most, target, effort)
             if found or end == 0:
                 return found
         return None
+
+    def fewest(self, F: Array, hard: Array, target: float, most: int, efforts: tuple[Effort, ...]) -> Found | None:
+        """Return the fewest pieces that are found in several ways."""
+        best = None
+        for effort in efforts:
+            if not effort.backward:
+                found = self.curve(F, hard, target, most, effort)
+            else:
+                found = self.curve(np.ascontiguousarray(F[::-1, ::-1]), hard[::-1].copy(), target, most, effort)
+                found = self._turned(F, found, target) if found else None
+            if found and (best is None or len(found.G) < len(best.G)):
+                best = found
+        return best
+
+    def _turned(self, F: Array, found: Found, target: float) -> Found | None:
+        """Return what was found for the curve backward, forward; its proof is made again."""
+        G = np.ascontiguousarray(found.G[::-1, ::-1])
+        u, s = len(G) - found.u[::-1], len(F) - found.s[::-1]
+        square = path_square(Pair(F, G, self.metric, self.product, *self.loops), self.matching, u, s, self.widest)
+        return Found(G, u, s, float(square)) if 0 <= square <= target else None
 
     def _certified(
         self, F: Array, end: int, last: int, count: int, most: int, target: float, effort: Effort
@@ -113,9 +143,29 @@ class Search:
             self.u, self.s = (np.zeros(2 * len(self.u) + 4 * len(u) + 64) for _ in range(2))
 
 
+@kernel
+def straight(S, j, end, D):
+    """Tell whether the samples from one to another are on a line, but for rounding."""
+    chord = 0.0
+    for c in range(len(D)):
+        chord += (S.y[end, c] - S.y[j, c]) * (S.y[end, c] - S.y[j, c])
+    for i in range(j, end):
+        w = (S.arc[i] - S.arc[j]) / (S.arc[end] - S.arc[j]) if S.arc[end] > S.arc[j] else 0.0
+        away = 0.0
+        for c in range(len(D)):
+            off = S.y[i, c] - S.y[j, c] - w * (S.y[end, c] - S.y[j, c])
+            away += off * off + S.a[i, c] * S.a[i, c]
+        if away > LEVEL * LEVEL * chord:
+            return False
+    return True
+
+
 @kernel(inline=False)
 def written(F, G, count, S, last, unit, out, room):
-    """Write pieces in the units of f; points at hard samples are those of f."""
+    """Write pieces in the units of f; points at hard samples are those of f.
+
+    What is a piece of f between hard samples is written as that, what is straight as a line.
+    """
     D, p = room.D, room.p
     point(F[0], 0.0, room)
     for c in range(len(D)):
@@ -129,15 +179,25 @@ def written(F, G, count, S, last, unit, out, room):
         if k > 0:
             for c in range(len(D)):
                 out[k - 1, 3, c] = out[k, 0, c]
+    before = -1
     for j in range(last + 1):
-        if S.hard[j]:
-            i, k = int(S.s[j]), int(S.u[j])
-            if i < len(F):
-                point(F[i], 0.0, room)
-            else:
-                point(F[i - 1], 1.0, room)
-            for c in range(len(D)):
-                if k < count:
-                    out[k, 0, c] = p[0, c]
-                if k > 0:
-                    out[k - 1, 3, c] = p[0, c]
+        if not S.hard[j]:
+            continue
+        i, k = int(S.s[j]), int(S.u[j])
+        if i < len(F):
+            point(F[i], 0.0, room)
+        else:
+            point(F[i - 1], 1.0, room)
+        for c in range(len(D)):
+            if k < count:
+                out[k, 0, c] = p[0, c]
+            if k > 0:
+                out[k - 1, 3, c] = p[0, c]
+        if before >= 0 and S.u[j] - S.u[before] == 1:
+            if whole(F, S, before, j, D):
+                as_cubic(F[i - 1], out[k - 1], D)
+            elif straight(S, before, j, D):
+                for c in range(len(D)):
+                    side = (out[k - 1, 3, c] - out[k - 1, 0, c]) / 3
+                    out[k - 1, 1, c], out[k - 1, 2, c] = out[k - 1, 0, c] + side, out[k - 1, 3, c] - side
+        before = j

@@ -70,10 +70,10 @@ def moved(G, k0, k1, room, lo, hi, D):
 
 
 @kernel(inline=False)
-def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair):
+def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair, target):
     """Lower Φ by at most `steps` damped Gauss-Newton steps over pieces k0 … k1; return the largest distance.
 
-    The start is fixed, and the end if `tied`.
+    Done when that is within the target. The start is fixed, and the end if `tied`.
     """
     D, u = room.D, S.u
     lo, hi = len(D), (3 * (k1 - k0) + 4 - tied) * len(D)
@@ -81,10 +81,10 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair):
     phi, worst = measured(G, k0, k1, S, ja, jb, room, state, half, math.inf, fair)
     damping, before = 1e-3, worst
     for step in range(steps):
-        if worst <= TARGET:
+        if worst <= target:
             break
         if step > 0 and step % CHECK == 0:
-            if worst > FAR or before - worst < GAIN * (before - TARGET):
+            if worst > TARGET and (worst > FAR or before - worst < GAIN * (before - TARGET)):
                 break
             before = worst
         if not solved(room, state, lo, hi, damping, D):
@@ -110,7 +110,7 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair):
 @kernel(inline=False)
 def fitted_window(G, k0, k1, S, ja, jb, room, tied, steps, fair):
     """Fit pieces k0 … k1 together to samples ja … jb, first in the 8-norm, then, when near, in the 20-norm."""
-    worst = descended(G, k0, k1, S, ja, jb, room, tied, 4, steps, fair)
+    worst = descended(G, k0, k1, S, ja, jb, room, tied, 4, steps, fair, TARGET)
     if TARGET < worst < NEAR:
-        worst = descended(G, k0, k1, S, ja, jb, room, tied, 10, steps, fair)
+        worst = descended(G, k0, k1, S, ja, jb, room, tied, 10, steps, fair, TARGET)
     return worst
