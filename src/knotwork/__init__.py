@@ -3,22 +3,52 @@
 `import knotwork` is quick: each part loads when one of its names is first used.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+import importlib as _importlib
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from knotwork import arithmetic as arithmetic
-    from knotwork import diagrams as diagrams
-    from knotwork import progressive as progressive
-    from knotwork import stability as stability
-    from knotwork.conversion import Conversion, PolynomialPieces, convert, elevate, from_pieces, lower
+    from knotwork import arithmetic, diagrams, errors, insertion, progressive, stability
+    from knotwork.building import curve, surface, volume
+    from knotwork.conversion import (
+        Conversion,
+        PolynomialPieces,
+        Unified,
+        close,
+        convert,
+        elevate,
+        from_pieces,
+        interpolate,
+        join,
+        lower,
+        unify,
+    )
+    from knotwork.errors import (
+        FileError,
+        KnotError,
+        KnotworkError,
+        MissingExtraError,
+        ParameterError,
+        PointError,
+        RoundingWarning,
+        SizeError,
+    )
     from knotwork.files import Document, Written, open, read, write
-    from knotwork.insertion import clamp, from_bezier, insert, insertion_matrix, split, to_bezier, trim
+    from knotwork.insertion import (
+        Extraction,
+        clamp,
+        extraction,
+        from_bezier,
+        insert,
+        insertion_matrix,
+        split,
+        to_bezier,
+        trim,
+    )
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
     from knotwork.removal import Distance, Matching, Reduction, distance_bound, fit, reduce, relative, remove
     from knotwork.space import SplineSpace
-    from knotwork.spline import Spline, curve, surface
+    from knotwork.spline import Spline
 
 __version__ = "0.1.0"
 
@@ -26,25 +56,41 @@ __all__ = [
     "Conversion",
     "Distance",
     "Document",
+    "Extraction",
+    "FileError",
+    "KnotError",
+    "KnotworkError",
     "Matching",
+    "MissingExtraError",
+    "ParameterError",
+    "PointError",
     "PolynomialPieces",
     "Reduction",
+    "RoundingWarning",
+    "SizeError",
     "Spline",
     "SplineSpace",
+    "Unified",
     "Written",
     "arithmetic",
     "blossom",
     "clamp",
+    "close",
     "convert",
     "curve",
     "diagrams",
     "distance_bound",
     "elevate",
+    "errors",
+    "extraction",
     "fit",
     "from_bezier",
     "from_pieces",
     "insert",
+    "insertion",
     "insertion_matrix",
+    "interpolate",
+    "join",
     "lower",
     "open",
     "plot",
@@ -59,33 +105,74 @@ __all__ = [
     "surface",
     "to_bezier",
     "trim",
+    "unify",
+    "volume",
     "write",
 ]
 
 _PARTS = {
     "arithmetic": (),
-    "conversion": ("Conversion", "PolynomialPieces", "convert", "elevate", "from_pieces", "lower"),
+    "building": ("curve", "surface", "volume"),
+    "conversion": (
+        "Conversion",
+        "PolynomialPieces",
+        "Unified",
+        "close",
+        "convert",
+        "elevate",
+        "from_pieces",
+        "interpolate",
+        "join",
+        "lower",
+        "unify",
+    ),
     "diagrams": (),
+    "errors": (
+        "FileError",
+        "KnotError",
+        "KnotworkError",
+        "MissingExtraError",
+        "ParameterError",
+        "PointError",
+        "RoundingWarning",
+        "SizeError",
+    ),
     "files": ("Document", "Written", "open", "read", "write"),
-    "insertion": ("clamp", "from_bezier", "insert", "insertion_matrix", "split", "to_bezier", "trim"),
+    "insertion": (
+        "Extraction",
+        "clamp",
+        "extraction",
+        "from_bezier",
+        "insert",
+        "insertion_matrix",
+        "split",
+        "to_bezier",
+        "trim",
+    ),
     "plotting": ("plot",),
     "progressive": ("blossom", "segment"),
     "removal": ("Distance", "Matching", "Reduction", "distance_bound", "fit", "reduce", "relative", "remove"),
     "space": ("SplineSpace",),
-    "spline": ("Spline", "curve", "surface"),
+    "spline": ("Spline",),
     "stability": (),
 }
 
+if not TYPE_CHECKING:  # a type checker knows all names, and refuses others
 
-def __getattr__(name: str) -> Any:
-    """Load the part that a name lives in, once."""
-    for part, names in _PARTS.items():
-        if name == part or name in names:
-            module = importlib.import_module(f"knotwork.{part}")
-            globals().update({part: module} | {each: getattr(module, each) for each in names})
-            return globals()[name]
-    raise AttributeError(f"module 'knotwork' has no attribute {name!r}")
+    def __getattr__(name):
+        """Load the part that a name lives in, once."""
+        for part, names in _PARTS.items():
+            if name == part or name in names:
+                module = _importlib.import_module(f"knotwork.{part}")
+                globals().update({part: module} | {each: getattr(module, each) for each in names})
+                return globals()[name]
+        raise AttributeError(
+            f"module 'knotwork' has no attribute {name!r}", name=name, obj=_importlib.import_module("knotwork")
+        )
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return [*__all__, "__version__"]
+
+
+del TYPE_CHECKING

@@ -1,5 +1,9 @@
 """The errors: each says what was given and what was expected, before any work starts."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
 
 class KnotworkError(ValueError):
     """Root of all errors raised for bad input."""
@@ -31,3 +35,11 @@ class FileError(KnotworkError):
 
 class MissingExtraError(ImportError):
     """An optional library is not installed; the message says how to install it."""
+
+
+def nearest_name(given: object, known: Iterable[str]) -> str:
+    """Return "; did you mean …?" with the known name that is most like the one given, or nothing."""
+    from difflib import get_close_matches
+
+    found = get_close_matches(given, list(known), 1) if isinstance(given, str) else []
+    return f"; did you mean {found[0]!r}?" if found else ""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, real_numbers, require_finite
+from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, real_numbers, require_finite, whole
 from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import ParameterError
@@ -149,6 +149,17 @@ class Basis:
         basis(self.t, extent(n), extent(order + 1), span, u, E)
         span -= n
         return self.unrolled.own(span), E
+
+
+def design_matrix(space: SplineSpace, u: Any, order: int = 0) -> Banded:
+    """Return the derivatives of an order of all basis functions at parameters: see `SplineSpace.basis`."""
+    x = parameters(space, u, False)
+    if x.ndim > 1:
+        raise ParameterError(f"parameters of shape {x.shape} given; expected a number or a flat list")
+    x = np.ascontiguousarray(x).reshape(-1)
+    order = whole(order, "derivative", 0, ParameterError)
+    first, E = Basis(space, x).rows(x, order)
+    return Banded(first, E[order], space.dimension)
 
 
 def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:

@@ -125,6 +125,11 @@ def multiplicities(knots: Array, values: Array) -> Array:
     return np.searchsorted(knots, values, "right") - np.searchsorted(knots, values, "left")
 
 
+def nearest_knot(knots: Array, x: Any) -> Any:
+    """Return the knot that is nearest to x."""
+    return knots[int(np.argmin(np.abs(knots - x)))]
+
+
 def combine(a: Array, b: Array, pick: Callable[[Array, Array], Array]) -> Array:
     """Return the knots whose multiplicity is `pick(multiplicities in a, in b)`: minimum, maximum or difference."""
     values = distinct(merged(a, b))[0]

@@ -5,17 +5,19 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, exact, require_room, whole
+from knotwork import conventions
+from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, real_array, require_finite, require_room, whole
 from knotwork.errors import KnotError, ParameterError
 from knotwork.knots import (
     combine,
     distinct,
     merged,
     multiplicities,
+    nearest_knot,
     nodes,
     require_multiplicity,
     sorted_knots,
@@ -23,6 +25,9 @@ from knotwork.knots import (
 )
 from knotwork.unrolled import Unrolled, reach, require_apart
 from knotwork.value import Frozen
+
+if TYPE_CHECKING:
+    from knotwork.linear.banded import Banded
 
 _set = object.__setattr__
 
@@ -137,6 +142,65 @@ class SplineSpace(Frozen):
         inner = np.repeat(x[1:-1], max(degree, 1))
         return cls(degree, np.concatenate([np.repeat(x[:1], degree + 1), inner, np.repeat(x[-1:], degree + 1)]))
 
+    @classmethod
+    def from_breaks(cls, degree: int, breaks: Any, multiplicities: Any = None, *, periodic: bool = False) -> Self:
+        """Return the space of distinct knots, each with a multiplicity: the convention of OpenCASCADE and of STEP.
+
+        Parameters
+        ----------
+        degree : int
+        breaks : array_like
+            Increasing.
+        multiplicities : sequence of int, optional
+            As many as breaks; those of the two ends of a period are equal, for both are the seam. By default 1, and
+            ``degree + 1`` at ends that are not those of a period.
+        periodic : bool
+
+        Raises
+        ------
+        KnotError
+            If breaks repeat, or multiplicities do not fit.
+
+        Examples
+        --------
+        >>> SplineSpace.from_breaks(2, [0, 1, 3], [3, 2, 3])
+        SplineSpace(2, [0.0, 0.0, 0.0, 1.0, 1.0, 3.0, 3.0, 3.0])
+        >>> SplineSpace.from_breaks(2, [0, 1, 3], [2, 1, 2], periodic=True)
+        SplineSpace(2, [0.0, 0.0, 1.0, 3.0], periodic=True)
+        """
+        degree = require_degree(degree)
+        return cls(degree, conventions.repeated(degree, breaks, multiplicities, periodic), periodic=periodic)
+
+    @classmethod
+    def from_opennurbs(cls, degree: int, knots: Any, *, periodic: bool = False) -> Self:
+        """Return the space of knots in the convention of OpenNURBS, Rhino and 3DM: the first and the last are left out.
+
+        Parameters
+        ----------
+        degree : int
+            1 or more.
+        knots : array_like
+            As many as control points, and ``degree - 1`` more. The two that are missing do not matter to the spline:
+            the ends are repeated.
+        periodic : bool
+            Whether the knots are those of a period that is wrapped, its first `degree` control points repeated at the
+            end. Leave these out: where the seam is a single knot, ``points[degree:]`` are the points over the space.
+
+        Raises
+        ------
+        KnotError
+            If there are too few knots, or they are no knots of a space.
+
+        Examples
+        --------
+        >>> SplineSpace.from_opennurbs(3, [0, 0, 0, 1, 1, 1])
+        SplineSpace(3, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
+        >>> SplineSpace.from_opennurbs(2, range(-1, 7), periodic=True)
+        SplineSpace(2, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], periodic=True)
+        """
+        degree = require_degree(degree)
+        return cls(degree, conventions.without_first_and_last(degree, knots, periodic), periodic=periodic)
+
     # ---- what a space is ----------------------------------------------------------------------------------------
 
     @property
@@ -213,6 +277,34 @@ class SplineSpace(Frozen):
             return self._cache[name]
         except KeyError:
             return self._cache.setdefault(name, make())
+
+    def basis(self, u: Any, derivative: int = 0) -> Banded:
+        """Return the sparse design matrix: the values at parameters of all basis functions, or of a derivative.
+
+        Parameters
+        ----------
+        u : number or array_like, shape (m,)
+            In the domain; parameters of a period wrap around.
+        derivative : int
+            Which: 0 for the values.
+
+        Returns
+        -------
+        Banded, shape (m, dimension)
+            Times control points, the points (or derivatives) of a spline of this space at u. At a knot, those from the
+            right. ``.tocsr()`` and ``np.asarray`` convert it.
+
+        Examples
+        --------
+        >>> S = SplineSpace.bezier(2, [0, 1])
+        >>> S.basis([0, 0.5]).toarray().tolist()
+        [[1.0, 0.0, 0.0], [0.25, 0.5, 0.25]]
+        >>> S.basis(0.5, derivative=1).toarray().tolist()
+        [[-1.0, 0.0, 1.0]]
+        """
+        from knotwork.evaluation import design_matrix  # a room above: loaded when it is asked for
+
+        return design_matrix(self, u, derivative)
 
     # ---- the algebra --------------------------------------------------------------------------------------------
 
@@ -368,12 +460,39 @@ class SplineSpace(Frozen):
         lacking = counts > found
         if lacking.any():
             i = int(np.argmax(lacking))
-            raise KnotError(f"knot {values[i]} is there {found[i]} times; cannot remove it {counts[i]} times")
+            near = "" if found[i] else f"; the nearest knot is {nearest_knot(self.knots, values[i])}"
+            raise KnotError(f"knot {values[i]} is there {found[i]} times; cannot remove it {counts[i]} times{near}")
         kept = combine(self.knots, x, np.subtract)
         n = 0 if self.periodic else self.degree
         if len(kept) < 2 * n + 2 or (kept[n], kept[-n - 1]) != self.domain:
             raise KnotError(f"without these knots the domain would no longer be [{a}, {b}]; expected knots inside it")
         return SplineSpace(self.degree, kept, periodic=self.periodic)
+
+    def with_domain(self, a: Any, b: Any) -> SplineSpace:
+        """Return the space with its knots mapped evenly so that the domain is [a, b].
+
+        Raises
+        ------
+        KnotError
+            If a < b does not hold, or knots that differ would coincide.
+
+        Examples
+        --------
+        >>> SplineSpace(1, [0, 0, 1, 2, 2]).with_domain(-1, 1)
+        SplineSpace(1, [-1.0, -1.0, 0.0, 1.0, 1.0])
+        """
+        ends = in_arithmetic_of(self.knots, real_array([a, b], "domain", KnotError), "domain", KnotError)
+        require_finite(ends, "domain", KnotError)
+        if not ends[0] < ends[1]:
+            raise KnotError(f"domain [{a}, {b}] given; expected the first end below the second")
+        (start, end), t = self.domain, self.knots
+        scale = (ends[1] - ends[0]) / (end - start)
+        near, far = t - start, end - t  # from the nearer end, which is met exactly
+        moved = np.where(near <= far, ends[0] + near * scale, ends[1] - far * scale)
+        lost = (moved[1:] <= moved[:-1]) & (t[1:] != t[:-1])
+        if lost.any():
+            raise KnotError(f"knots that differ would coincide at {moved[int(np.argmax(lost))]} over [{a}, {b}]")
+        return SplineSpace(self.degree, moved, periodic=self.periodic)
 
     def in_exact_arithmetic(self) -> SplineSpace:
         """Return the same space with each float knot as the Fraction of the same value."""

@@ -1,9 +1,11 @@
-"""Splines as values: a point in a tensor product of spline spaces; curves, surfaces, volumes."""
+"""Splines as values: a point in a tensor product of spline spaces."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Self
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from numbers import Number
+from typing import Any, Self, cast
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, numbers, 
 from knotwork.calculus import antiderivative, derivative
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import on_grid, parameters, quotient_rule, scattered
-from knotwork.space import SplineSpace, checked_space, require_degree
+from knotwork.space import SplineSpace
 from knotwork.value import Frozen
 
 _set = object.__setattr__
@@ -74,7 +76,7 @@ class Spline(Frozen):
         if rational:
             if given.ndim == k or given.dtype.kind == "c":
                 raise PointError("a rational spline takes real homogeneous coordinates: the last one is the weight")
-            _require_positive(given[..., -1])
+            require_positive(given[..., -1])
         if given.dtype.hasobject or any(space.exact for space in spaces):
             given = given if given.dtype.hasobject else exact(given, what, PointError)
             spaces = tuple(space.in_exact_arithmetic() for space in spaces)
@@ -86,6 +88,13 @@ class Spline(Frozen):
         _set(self, "coefficients", coefficients)
         _set(self, "rational", rational)
         _set(self, "_points", None)
+
+    @classmethod
+    def of(cls, spaces: tuple[SplineSpace, ...], points: Any, what: str) -> Self:
+        """Return the polynomial spline of points; errors call them `what`."""
+        self = cls.__new__(cls)
+        self._check(spaces, points, False, what)
+        return self
 
     @classmethod
     def trusted(cls, spaces: tuple[SplineSpace, ...], coefficients: Array, rational: bool = False) -> Self:
@@ -198,7 +207,7 @@ class Spline(Frozen):
 
     # ---- values -------------------------------------------------------------------------------------------------
 
-    def __call__(self, *u: Any, grid: bool = False, extrapolate: bool = False) -> Any:
+    def __call__(self, *u: Any, grid: bool = False, extrapolate: bool = False) -> Array:
         """Return the value at parameters.
 
         Parameters
@@ -251,6 +260,48 @@ class Spline(Frozen):
     def _require_count(self, u: Sequence[Any]) -> None:
         if len(u) != len(self.spaces):
             raise ParameterError(f"{len(u)} parameters given; this spline has {len(self.spaces)}")
+
+    # ---- sums and products: rooms above, loaded when they are asked for -------------------------------------------
+
+    __array_ufunc__ = None  # NumPy's numbers leave sums and products with a spline to it
+
+    def __add__(self, other: Any) -> Spline:
+        """Return the sum with a spline over the same domain, or with a number that is added to all coordinates."""
+        if isinstance(other, Spline):
+            from knotwork.conversion.algebra import total
+
+            return total(self, other)
+        return self.transform(1, other) if isinstance(other, Number) else NotImplemented
+
+    __radd__ = __add__
+
+    def __mul__(self, other: Any) -> Spline:
+        """Return the product with a spline over the same domain, coordinate by coordinate, or with a number."""
+        if isinstance(other, Spline):
+            from knotwork.conversion.algebra import product
+
+            return product(self, other)
+        return self.transform(other) if isinstance(other, Number) else NotImplemented
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Spline:
+        return self.transform(-1)
+
+    def __sub__(self, other: Any) -> Spline:
+        return NotImplemented if not isinstance(other, Number | Spline) else self.__add__(cast(Any, other) * -1)
+
+    def __rsub__(self, other: Any) -> Spline:
+        return (-self).__add__(other)
+
+    def __truediv__(self, other: Any) -> Spline:
+        """Return the spline with its points divided by a number."""
+        if not isinstance(other, Number):
+            return NotImplemented
+        if not other:
+            raise ParameterError("division of a spline by 0")
+        divisor: Any = other
+        return self.transform((Fraction(1) if self.coefficients.dtype == object else 1) / divisor)
 
     # ---- new splines from old -----------------------------------------------------------------------------------
 
@@ -311,6 +362,62 @@ class Spline(Frozen):
         index = (seam - 2 - space.degree - np.arange(space.dimension)) % space.dimension
         return self.with_axis(axis, SplineSpace(space.degree, mirrored, periodic=True), np.take(P, index, axis))
 
+    def with_domain(self, a: Any, b: Any, axis: int = 0) -> Spline:
+        """Return the spline over [a, b] in one parameter: the same shape, its knots mapped evenly.
+
+        Examples
+        --------
+        >>> f = Spline(SplineSpace(1, [0, 0, 1, 2, 2]), [0, 1, 4]).with_domain(10, 14)
+        >>> f.space.knots.tolist(), float(f(13))
+        ([10.0, 10.0, 12.0, 14.0, 14.0], 2.5)
+        """
+        axis = self.axis(axis)
+        return self.with_axis(axis, self.spaces[axis].with_domain(a, b), self.coefficients)
+
+    def with_seam(self, u: Any, axis: int = 0) -> Spline:
+        """Return a periodic spline whose period starts at u: the same function, as parameters wrap around.
+
+        The start of a period is a knot: if u is none, it becomes one. A single knot at the old seam goes if the spline
+        is smooth there, up to rounding, so a seam that moves leaves no knot behind. u wraps around, as all parameters.
+
+        Raises
+        ------
+        ParameterError
+            If the parameter is not periodic.
+
+        Examples
+        --------
+        >>> c = Spline(SplineSpace.uniform(1, 4, periodic=True), [0, 1, 2, 3])
+        >>> c.with_seam(0.5).space.knots.tolist(), c.with_seam(0.5).coefficients.tolist()
+        ([0.5, 0.75, 1.0, 1.25, 1.5], [3.0, 0.0, 1.0, 2.0])
+        """
+        from knotwork.conversion.periods import with_seam  # a room above: loaded when it is asked for
+
+        return with_seam(self, u, self.axis(axis))
+
+    def isocurve(self, u: Any, axis: int = 0) -> Spline:
+        """Return the curve of a surface along which parameter `axis` is u; of a volume, the surface.
+
+        Raises
+        ------
+        ParameterError
+            If there is one parameter alone, or u is outside the domain.
+
+        Examples
+        --------
+        >>> S = SplineSpace.bezier(1, [0, 1])
+        >>> Spline([S, S], [[0, 1], [2, 3]]).isocurve(0.5).coefficients.tolist()
+        [1.0, 2.0]
+        """
+        axis = self.axis(axis)
+        if len(self.spaces) == 1:
+            raise ParameterError("a curve has points, no isocurves: a call gives them")
+        if np.ndim(u):
+            raise ParameterError(f"u of shape {np.shape(u)} given; expected one parameter")
+        c = self.spaces[axis].basis(u).apply(self.coefficients, axis)
+        rest = (*self.spaces[:axis], *self.spaces[axis + 1 :])
+        return Spline.trusted(rest, np.ascontiguousarray(c.squeeze(axis)), self.rational)
+
     def axis(self, axis: int) -> int:
         """Return `axis` as a number from 0 on, or raise if there is no such parameter."""
         if (
@@ -320,6 +427,22 @@ class Spline(Frozen):
         ):
             raise ParameterError(f"axis {axis!r} given; this spline has parameters 0 … {len(self.spaces) - 1}")
         return int(axis) % len(self.spaces)
+
+    def by_axis(self, given: Any, axis: int, single: Callable[[Any], bool]) -> list[tuple[int, Any]]:
+        """Return what was given, for one axis or for several, as pairs of an axis and what is for it.
+
+        A mapping has axes as keys; a list or tuple that is no `single` value has an entry for each parameter, or None.
+        """
+        if isinstance(given, Mapping):
+            pairs = [(self.axis(key), value) for key, value in given.items()]
+            if len({key for key, _ in pairs}) < len(pairs):
+                raise ParameterError(f"axes {list(given)} given; expected each parameter once")
+            return pairs
+        if not isinstance(given, list | tuple) or single(given):
+            return [(self.axis(axis), given)]
+        if len(given) != len(self.spaces):
+            raise ParameterError(f"{len(given)} entries given; this spline has {len(self.spaces)} parameters")
+        return [(key, value) for key, value in enumerate(given) if value is not None]
 
     def in_exact_arithmetic(self) -> Spline:
         """Return the same spline with each float as the Fraction of the same value."""
@@ -340,18 +463,33 @@ class Spline(Frozen):
         order : int
             How many times.
 
-        Raises
-        ------
-        ParameterError
-            If the spline is rational: then `derivatives` gives values, by the quotient rule.
+        Notes
+        -----
+        Of a rational spline A / w it is (A' w - A w') / w², rational and of twice the degree, on a space with clamped
+        ends; `derivatives` gives values with less work.
+
+        Examples
+        --------
+        >>> half = Spline(SplineSpace.bezier(1, [0, 1]), [[0, 1], [2, 2]], rational=True)  # 2u / (1 + u)
+        >>> half.derivative().points.tolist(), half.derivative().weights.tolist()  # 2 / (1 + u)²
+        ([[2.0], [1.0], [0.5]], [1.0, 2.0, 4.0])
         """
         axis = self.axis(axis)
         order = whole(order, "order of derivative", 0, ParameterError)
-        self._require_polynomial("derivative")
+        if self.rational:
+            return self._rational_derivative(axis, order)
         space, coefficients = self.spaces[axis], self.coefficients
         for _ in range(min(order, space.degree + 1)):
             space, coefficients = derivative(space, coefficients, axis)
         return self.with_axis(axis, space, coefficients)
+
+    def _rational_derivative(self, axis: int, order: int) -> Spline:
+        from knotwork.conversion.algebra import derivative as of_rational  # a room above, loaded when asked for
+
+        spline = self
+        for _ in range(order):
+            spline = of_rational(spline, axis)
+        return spline
 
     def antiderivative(self, axis: int = 0) -> Spline:
         """Return the integral in one parameter, zero at the start of the domain, as a spline of degree one higher.
@@ -364,70 +502,9 @@ class Spline(Frozen):
             If the spline is rational: its integral is not a spline.
         """
         axis = self.axis(axis)
-        self._require_polynomial("antiderivative")
-        return self.with_axis(axis, *antiderivative(self.spaces[axis], self.coefficients, axis))
-
-    def _require_polynomial(self, what: str) -> None:
         if self.rational:
-            raise ParameterError(f"a rational spline has no {what} of this kind; derivatives(u, order) gives values")
-
-
-def curve(points: Any, degree: int = 3, knots: Any = None, weights: Any = None, periodic: bool = False) -> Spline:
-    """Return a spline of one parameter.
-
-    Parameters
-    ----------
-    points : array_like, shape (n, d), or (n,) for a scalar spline
-        Control points, plain (not multiplied by weights).
-    degree : int
-    knots : array_like, optional
-        Knot vector of n + degree + 1 knots, or n + 1 if periodic (one period and its end).
-        By default evenly spaced over [0, 1], clamped unless periodic.
-    weights : array_like, shape (n,), optional
-        Positive weights; with them the curve is rational.
-    periodic : bool
-
-    Examples
-    --------
-    >>> c = curve([[0, 0], [1, 2], [3, 2], [4, 0]])
-    >>> c(0.5).tolist()
-    [2.0, 1.5]
-    """
-    P = numbers(points, "points", PointError)
-    if P.ndim not in (1, 2):
-        raise PointError(f"points of shape {P.shape} given; a curve takes (n, d), or (n,) for numbers")
-    space = _space(degree, knots, P.shape[0], periodic, "points")
-    return _assemble((space,), P, weights)
-
-
-def surface(
-    points: Any,
-    degree: tuple[int, int] | int = (3, 3),
-    knots: tuple[Any, Any] | None = None,
-    weights: Any = None,
-    periodic: tuple[bool, bool] = (False, False),
-) -> Spline:
-    """Return a spline of two parameters.
-
-    Parameters
-    ----------
-    points : array_like, shape (n, m, d), or (n, m) for a scalar spline
-        Control net, plain (not multiplied by weights).
-    degree : (int, int) or int
-    knots : pair of array_like, optional
-        One knot vector a parameter (either may be None); by default evenly spaced over [0, 1].
-    weights : array_like, shape (n, m), optional
-        Positive weights; with them the surface is rational.
-    periodic : (bool, bool)
-    """
-    P = numbers(points, "points", PointError)
-    if P.ndim not in (2, 3):
-        raise PointError(f"points of shape {P.shape} given; a surface takes (n, m, d), or (n, m) for numbers")
-    degrees = _pair(degree, "degree")
-    vectors = (None, None) if knots is None else _pair(knots, "knots")
-    closed = _pair(periodic, "periodic")
-    spaces = tuple(_space(degrees[i], vectors[i], P.shape[i], closed[i], f"points along axis {i}") for i in range(2))
-    return _assemble(spaces, P, weights)
+            raise ParameterError("the integral of a rational spline is no spline; derivatives(u, order) gives values")
+        return self.with_axis(axis, *antiderivative(self.spaces[axis], self.coefficients, axis))
 
 
 def _plain(homogeneous: Array) -> Array:
@@ -435,58 +512,12 @@ def _plain(homogeneous: Array) -> Array:
     return homogeneous[..., :-1] / homogeneous[..., -1:]
 
 
-def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> SplineSpace:
-    """Return the space of `count` control points, or say which count fits."""
-    degree = require_degree(degree)
-    if knots is None:
-        least = 1 if periodic else degree + 1
-        if count < least:
-            raise PointError(f"{count} {what} given; degree {degree} needs at least {least}")
-        return SplineSpace.uniform(degree, count, periodic=True) if periodic else SplineSpace.clamped(degree, count)
-    extra = 1 if periodic else degree + 1
-    t = numbers(knots, "knots", KnotError)
-    if t.ndim == 1 and len(t) != count + extra:
-        raise KnotError(f"{len(t)} knots given; {count} {what} of degree {degree} take {count + extra}")
-    return checked_space(degree, t, periodic)
-
-
-def _assemble(spaces: tuple[SplineSpace, ...], P: Array, weights: Any) -> Spline:
-    """Return the spline of plain points and optional weights."""
-    if weights is None:
-        spline = Spline.__new__(Spline)
-        spline._check(spaces, P, False, "points")
-        return spline
-    w = numbers(weights, "weights", PointError)
-    k = len(spaces)
-    if w.shape != P.shape[:k]:
-        raise PointError(f"weights of shape {w.shape} given; points of shape {P.shape} take {P.shape[:k]}")
-    if w.dtype.kind == "c" or P.dtype.kind == "c":
-        raise PointError("complex points or weights given; a rational spline takes real ones")
-    require_finite(w, "weights", PointError)
-    _require_positive(w)
-    if object in (w.dtype, P.dtype):
-        w, P = (v if v.dtype == object else exact(v, "points", PointError) for v in (w, P))
-    points = P[..., None] if P.ndim == k else P
-    require_finite(points, "points", PointError)
-    dtype = points.dtype
-    with np.errstate(over="ignore"):  # said better by Spline
-        homogeneous = np.concatenate([points * w[..., None], w[..., None]], axis=-1).astype(dtype)
-    return Spline(spaces, homogeneous, rational=True)
-
-
-def _require_positive(weights: Array) -> None:
+def require_positive(weights: Array) -> None:
+    """Raise unless all weights are positive."""
     bad = weights <= 0
     if bad.any():
         place = np.unravel_index(int(np.argmax(bad)), weights.shape)
         raise PointError(f"weights[{', '.join(map(str, place))}] is {weights[place]}; expected positive weights")
-
-
-def _pair(value: Any, what: str) -> tuple[Any, Any]:
-    if isinstance(value, int | np.integer | bool):
-        return value, value
-    if isinstance(value, str) or not hasattr(value, "__len__") or len(value) != 2:
-        raise ParameterError(f"{what} {value!r} given; a surface takes a pair")
-    return value[0], value[1]
 
 
 def _restore(cls: type[Spline], spaces: tuple[SplineSpace, ...], coefficients: Array, rational: bool) -> Spline:

@@ -15,7 +15,7 @@ import oracle
 import strategies as kinds
 from conversion.pairs import copies_inside, intersection, pairs, places, values
 from knotwork.conversion.certificate import difference
-from knotwork.conversion.nesting import common_refinement, embedding, holds, product
+from knotwork.conversion.nesting import common_refinement, embedding, holds
 from knotwork.errors import KnotError, ParameterError, PointError
 
 F = Fraction
@@ -97,7 +97,7 @@ def test_products_of_matrices(space):
     finer = common_refinement(space, space)
     higher = common_refinement(finer, kw.SplineSpace.bezier(4, finer.domain) if not finer.periodic else finer)
     first, second = embedding(space, finer), embedding(finer, higher)
-    assert (product(second, first).toarray() == second.toarray() @ first.toarray()).all()
+    assert ((second @ first).toarray() == second.toarray() @ first.toarray()).all()
 
 
 # ---- every way ----------------------------------------------------------------------------------------------------

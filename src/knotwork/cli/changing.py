@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -25,6 +25,9 @@ from knotwork.cli.program import (
 )
 from knotwork.cli.terminal import Failure, Progress, Tolerance
 from knotwork.errors import KnotworkError
+
+if TYPE_CHECKING:
+    from knotwork.conversion.face import How
 
 #: files whose points carry no parametrisation
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".xy", ".asc")
@@ -244,7 +247,7 @@ def convert_space(
     knots: list[float] | None,
     like: Path | None,
     degree: int | None,
-    how: str,
+    how: How,
     axis: int,
     only: Sequence[int],
     output: Path | None,

@@ -9,6 +9,7 @@ that are not negative and sum to one.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -103,15 +104,16 @@ def raise_degree(T, U, W, n, lo, P, out, start, count, E, R, x, D):
                 combination(out, a, top + i, P, start[i], E, i, count[i], D)
 
 
-def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
+def elevate(spline: Spline, times: int | Mapping[int, int] | Sequence[int | None] = 1, axis: int = 0) -> Spline:
     """Return the same spline with the degree in one parameter raised; every break gets as many more knots.
 
     Parameters
     ----------
     times : int
-        By how much to raise the degree.
+        By how much to raise the degree. For several parameters, a mapping from axes to numbers, or a number or None for
+        each parameter.
     axis : int
-        Which parameter.
+        Which parameter, if it is one.
 
     Examples
     --------
@@ -119,13 +121,16 @@ def elevate(spline: Spline, times: int = 1, axis: int = 0) -> Spline:
     >>> line = kw.curve([[0, 0], [2, 2], [4, 0]], degree=1, knots=[0, 0, 1, 2, 2])
     >>> kw.elevate(line).points.tolist()
     [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 1.0], [4.0, 0.0]]
+    >>> kw.elevate(kw.surface([[0, 1], [2, 3]], degree=1), (2, 1)).degree
+    (3, 2)
     """
-    axis = spline.axis(axis)
-    times = whole(times, "times", 0, ParameterError)
-    space = spline.spaces[axis]
-    require_room((space.dimension + times, spline.coefficients.size // space.dimension), spline.coefficients.dtype)
-    for _ in range(times):
-        spline = _once(spline, axis)
+    wanted = spline.by_axis(times, axis, lambda _: False)
+    for each, count in wanted:
+        more = whole(count, "times", 0, ParameterError)
+        space = spline.spaces[each]
+        require_room((space.dimension + more, spline.coefficients.size // space.dimension), spline.coefficients.dtype)
+        for _ in range(more):
+            spline = _once(spline, each)
     return spline
 
 

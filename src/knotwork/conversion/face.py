@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Generic, Literal, NamedTuple, TypeVar, get_args, overload
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from knotwork.conversion.chebyshev import chebyshev
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.nesting import common_refinement, embedding, holds
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
-from knotwork.conversion.polynomials import BASES, to_pieces
+from knotwork.conversion.polynomials import BASES, Basis, PolynomialPieces, to_pieces
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.evaluation import Basis
+from knotwork.evaluation import design_matrix
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.linear.elimination import solve
 from knotwork.linear.least_squares import least_squares
@@ -24,14 +24,18 @@ from knotwork.spline import Spline
 
 #: norms of conversion matrices up to this one are small: at most four bits are lost
 SMALL = 16
-WAYS = ("auto", "oslo", "interpolation", "least-squares")
+How = Literal["auto", "oslo", "interpolation", "least-squares"]
+WAYS = get_args(How)
+Targets = SplineSpace | Sequence[SplineSpace | None] | Mapping[int, SplineSpace]
+#: a Spline or PolynomialPieces
+S = TypeVar("S")
 
 
-class Conversion(NamedTuple):
+class Conversion(NamedTuple, Generic[S]):
     """The result of a conversion."""
 
     #: a Spline, or PolynomialPieces if these were asked for
-    spline: Any
+    spline: S
     #: the spline given and the one returned differ by this much at most, anywhere, in any coordinate
     bound: Any
     #: whether they are the same function; in float arithmetic, up to rounding
@@ -40,14 +44,25 @@ class Conversion(NamedTuple):
     how: Any
 
 
-def convert(spline: Spline, target: Any, *, axis: int | None = None, how: str = "auto") -> Conversion:
+@overload
+def convert(spline: Spline, target: Basis, *, axis: None = None, how: How = "auto") -> Conversion[PolynomialPieces]: ...
+
+
+@overload
+def convert(spline: Spline, target: Targets, *, axis: int | None = None, how: How = "auto") -> Conversion[Spline]: ...
+
+
+def convert(
+    spline: Spline, target: Basis | Targets, *, axis: int | None = None, how: How = "auto"
+) -> Conversion[PolynomialPieces] | Conversion[Spline]:
     """Return a spline over another space: the same function if that holds it, otherwise one near it.
 
     Parameters
     ----------
     spline : Spline
-    target : SplineSpace or sequence of SplineSpace, "bezier" or "monomial"
-        A space of any degree and knots, over the domain of the spline. One per parameter, or a single one with `axis`.
+    target : SplineSpace, sequence or mapping of SplineSpace, "bezier" or "monomial"
+        A space of any degree and knots, over the domain of the spline. One or None for each parameter, a mapping from
+        axes to spaces, or a single one with `axis`.
         Or a basis, for the polynomial pieces of the spline, each in that basis over its own interval.
     axis : int, optional
         The only parameter to convert.
@@ -123,7 +138,7 @@ def measured(spline: Spline, result: Spline) -> Difference:
     return difference(spline, result)
 
 
-def concluded(spline: Spline, result: Spline, how: Any, change: Difference) -> Conversion:
+def concluded(spline: Spline, result: Spline, how: Any, change: Difference) -> Conversion[Spline]:
     """Return the result of a conversion with what it changed."""
     exact = nested(spline, result) or bool((change.found <= rounding(spline)).all())
     return Conversion(result, change.largest, exact, how)
@@ -140,6 +155,9 @@ def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineS
         axes = [spline.axis(axis)]
     else:
         axes = list(range(len(spline.spaces)))
+        if isinstance(target, Mapping) or (isinstance(target, list | tuple) and any(each is None for each in target)):
+            pairs = spline.by_axis(target, 0, lambda _: False)
+            axes, target = [key for key, _ in pairs], [each for _, each in pairs]
     spaces = [target] if isinstance(target, SplineSpace) else list(target) if isinstance(target, list | tuple) else []
     if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):
         raise ParameterError(
@@ -210,15 +228,9 @@ def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
     if target.exact:
         x = exact(x, "extrema", KnotError)
         x[0], x[-1] = target.domain
-    values = _collocation(spline.spaces[axis], x).apply(spline.coefficients, axis)
-    A = _collocation(target, x)
+    values = design_matrix(spline.spaces[axis], x).apply(spline.coefficients, axis)
+    A = design_matrix(target, x)
     return solved(spline, axis, target, values, lambda y: solve(A, y))
-
-
-def _collocation(space: SplineSpace, x: Array) -> Banded:
-    """Return the matrix of the basis functions at x."""
-    first, E = Basis(space, x).rows(x)
-    return Banded(first, E[0], space.dimension)
 
 
 def solved(spline: Spline, axis: int, target: SplineSpace, values: Array, solution: Callable[[Array], Array]) -> Spline:

@@ -8,9 +8,9 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, all_finite, exact, numbers, require_finite, whole
 from knotwork.conversion.certificate import Tolerance, coefficientwise
-from knotwork.conversion.face import Conversion, convert, measured
+from knotwork.conversion.face import Conversion, How, convert, measured
 from knotwork.conversion.nesting import common_refinement, space_over
-from knotwork.conversion.polynomials import PolynomialPieces, nets_of
+from knotwork.conversion.polynomials import Basis, PolynomialPieces, nets_of
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import from_bezier, is_rational
 from knotwork.knots import sorted_knots
@@ -19,6 +19,7 @@ from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 #: parts of the tolerance tried for the joints, until the whole keeps it
+JOINING: tuple[How, ...] = ("auto", "least-squares")
 SHARES = (1, 1 / 4, 1 / 16, 1 / 256, 2.0**-16, 2.0**-32, 0)
 
 
@@ -26,12 +27,12 @@ def from_pieces(
     pieces: Any,
     breaks: Any = None,
     *,
-    basis: str = "bezier",
+    basis: Basis = "bezier",
     rational: bool | None = None,
     periodic: bool = False,
     smoothness: Any = None,
     tolerance: Any = None,
-) -> Conversion:
+) -> Conversion[Spline]:
     """Return the spline with the fewest knots that holds given polynomial pieces.
 
     Parameters
@@ -98,7 +99,7 @@ def from_pieces(
     return found._replace(bound=found.bound + moved)
 
 
-def _joined(spline: Spline, smoothness: Any, tolerance: Any) -> Conversion:
+def _joined(spline: Spline, smoothness: Any, tolerance: Any) -> Conversion[Spline]:
     """Return the spline with the fewest knots near one that may have more."""
     allowed = Tolerance(spline, 0 if tolerance is None else tolerance)
     if smoothness is not None:
@@ -110,7 +111,7 @@ def _joined(spline: Spline, smoothness: Any, tolerance: Any) -> Conversion:
     most = allowed.allowed.max()
     for share in SHARES:
         orders = [_found(spline, axis, share * most) for axis in range(len(spline.spaces))]
-        for how in ("auto", "least-squares"):
+        for how in JOINING:
             found = convert(spline, [_smooth(s, o) for s, o in zip(spline.spaces, orders, strict=True)], how=how)
             change = measured(spline, found.spline)
             if allowed.admits(change):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -23,10 +23,13 @@ STEPS = 60
 GAP = 1e-12
 #: distance from the largest error, relative to it, that is not told from none: some roundings
 TOUCHING = 2.0**-50
-ENDS = ("free", "keep")
+Ends = Literal["free", "keep"]
+ENDS = get_args(Ends)
 
 
-def lower(spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None, *, ends: str = "free") -> Conversion:
+def lower(
+    spline: Spline, times: int = 1, axis: int = 0, tolerance: Any = None, *, ends: Ends = "free"
+) -> Conversion[Spline]:
     """Return the best spline with the degree in one parameter lowered; every break loses as many knots, but keeps one.
 
     Parameters

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.arithmetic.kernel import kernel
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.insertion.face import insertion_matrix
@@ -68,9 +67,9 @@ def embedding(space: SplineSpace, finer: SplineSpace) -> Banded:
     matrix = None
     while space.degree < finer.degree:
         space, step = raised(space)
-        matrix = step if matrix is None else product(step, matrix)
+        matrix = step if matrix is None else step @ matrix
     refinement = _refinement(space, finer)
-    return refinement if matrix is None else product(refinement, matrix)
+    return refinement if matrix is None else refinement @ matrix
 
 
 def _refinement(space: SplineSpace, finer: SplineSpace) -> Banded:
@@ -85,37 +84,3 @@ def _refinement(space: SplineSpace, finer: SplineSpace) -> Banded:
     lo = int(np.searchsorted(t, a, "left"))
     start, count, E = rows_of_matrix(t, new, space.dimension, n, lo, finer.dimension)
     return Banded.packed(start, count, E, space.dimension)
-
-
-def product(A: Banded, B: Banded) -> Banded:
-    """Return the matrix A·B of which every row has the entries of the rows of B that A combines."""
-    width = min(widest(A.first, A.entries, B.first, A.columns, B.columns) + B.entries.shape[1], B.columns)
-    E = np.zeros((len(A.first), width), np.result_type(A.entries, B.entries))
-    multiply(A.first, A.entries, B.first, B.entries, A.columns, B.columns, E)
-    first = B.first[A.first % A.columns]
-    wraps = A.wraps or B.wraps
-    return Banded.packed(first, np.full(len(E), width - 1), E, B.columns, wraps)
-
-
-@kernel
-def widest(first, X, other, columns, wrap):
-    """Return how much further to the right, at most, than with its first entry a row begins with another."""
-    most = 0
-    for i in range(len(first)):
-        start = other[first[i] % columns]
-        for r in range(X.shape[1]):
-            most = max(most, (other[(first[i] + r) % columns] - start) % wrap)
-    return most
-
-
-@kernel
-def multiply(first, X, other, Y, columns, wrap, E):
-    """E[i] += Σ_r X[i, r] · Y[first[i] + r], which starts as many columns further as its `other` is than the first."""
-    for i in range(len(first)):
-        start = other[first[i] % columns]
-        for r in range(X.shape[1]):
-            j = (first[i] + r) % columns
-            k = (other[j] - start) % wrap
-            for s in range(Y.shape[1]):
-                E[i, k] = E[i, k] + X[i, r] * Y[j, s]
-                k = k + 1 if k + 1 < wrap else 0

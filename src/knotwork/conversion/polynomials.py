@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from knotwork.insertion.pieces import to_bezier
 from knotwork.progressive import Curve, bernstein, change_basis, monomial
 from knotwork.spline import Spline
 
-BASES = ("bezier", "monomial")
+Basis = Literal["bezier", "monomial"]
+BASES = get_args(Basis)
 
 
 class PolynomialPieces(NamedTuple):

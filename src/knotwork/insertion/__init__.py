@@ -3,6 +3,7 @@
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from knotwork.insertion.elements import Extraction, extraction
 from knotwork.insertion.face import insert, insertion_matrix
 from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
@@ -13,10 +14,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "METHODS",
+    "Extraction",
     "Method",
     "Startup",
     "clamp",
     "count",
+    "extraction",
     "from_bezier",
     "insert",
     "insertion_matrix",

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from knotwork.insertion.auto import takes_boehm
 from knotwork.insertion.refinement import insert_one, matrix_to, missing_knots, refine
@@ -12,18 +15,20 @@ from knotwork.spline import Spline
 
 if TYPE_CHECKING:
     from knotwork.insertion.methods.catalogue import Method
+    from knotwork.insertion.names import MethodName
 
 
-def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> Spline:
+def insert(spline: Spline, knots: Any, axis: int = 0, method: MethodName = "auto") -> Spline:
     """Return the same spline with further knots.
 
     Parameters
     ----------
     spline : Spline
     knots : number or array_like
-        New knots in the domain of the parameter, in any order; repeats raise the multiplicity.
+        New knots in the domain of the parameter, in any order; repeats raise the multiplicity. For several parameters
+        of a surface or volume: a mapping from axes to such knots, or a list or None for each parameter.
     axis : int
-        Which parameter of a surface or volume.
+        Which parameter of a surface or volume, if it is one.
     method : str
         "auto", or one of `knotwork.insertion.METHODS`: all give the same spline, up to rounding.
 
@@ -45,7 +50,14 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> S
     >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
     >>> kw.insert(c, 0.5).points.tolist()
     [[0.0, 0.0], [0.5, 1.0], [2.0, 2.0], [3.5, 1.0], [4.0, 0.0]]
+    >>> net = kw.surface([[0, 1], [2, 3]], degree=1)
+    >>> kw.insert(net, {0: 0.5, 1: [0.25, 0.75]})
+    <surface of 3 × 4 numbers, degree 1 × 1>
     """
+    if isinstance(knots, Mapping) or (len(spline.spaces) > 1 and not _flat(knots)):
+        for each, new in spline.by_axis(knots, axis, _flat):
+            spline = insert(spline, new, each, method)
+        return spline
     if method != "auto":
         return _method(method).run(spline, knots, axis)
     spaces = spline.spaces
@@ -62,7 +74,7 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: str = "auto") -> S
     return refine(spline, axis, new)
 
 
-def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: str = "auto") -> Banded:
+def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: MethodName = "auto") -> Banded:
     """Return the matrix that takes control points over `space` to those over `refined`.
 
     Parameters
@@ -87,6 +99,13 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: str = "au
     if method != "auto":
         return _method(method).matrix(space, refined)
     return matrix_to(space, refined, missing_knots(space, refined))
+
+
+def _flat(knots: Any) -> bool:
+    """Tell whether these are the knots for one parameter: a number, or a list of numbers."""
+    return not isinstance(knots, list | tuple) or not any(
+        x is None or isinstance(x, list | tuple | np.ndarray) for x in knots
+    )
 
 
 def _method(name: str) -> Method:

@@ -54,17 +54,44 @@ def split(spline: Spline, u: Any, axis: int = 0) -> tuple[Spline, Spline]:
     )
 
 
-def trim(spline: Spline, a: Any, b: Any, axis: int = 0) -> Spline:
+def trim(spline: Spline, a: Any, b: Any = None, axis: int = 0) -> Spline:
     """Return the part of a spline over [a, b], clamped at both ends; parameters are not re-scaled.
 
-    A periodic spline may be trimmed across its seam: b may reach up to one period beyond a.
+    Parameters
+    ----------
+    a, b : number
+        The ends. For several parameters, a mapping from axes to pairs of ends, or a pair or None for each parameter,
+        instead of both. b may reach up to one period beyond a: a periodic spline may be trimmed across its seam.
+    axis : int
+        Which parameter, if it is one.
 
     Raises
     ------
     ParameterError
         If a < b does not hold or the part is not inside the domain.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> kw.trim(kw.curve([0, 4], degree=1), 0.25, 0.75).points.tolist()
+    [1.0, 3.0]
+    >>> net = kw.surface([[0, 4], [4, 8]], degree=1)
+    >>> kw.trim(net, {0: (0, 0.5), 1: (0.5, 1)}).points.tolist()
+    [[2.0, 4.0], [4.0, 6.0]]
     """
-    axis = spline.axis(axis)
+    if b is None:
+        parts = spline.by_axis(a, axis, lambda _: False)
+        if not all(isinstance(part, list | tuple) and len(part) == 2 for _, part in parts):
+            raise ParameterError(f"ends {a!r} given; expected two numbers, or a pair of them for each parameter")
+    else:
+        parts = [(spline.axis(axis), (a, b))]
+    for each, (start, end) in parts:
+        spline = _trimmed(spline, start, end, each)
+    return spline
+
+
+def _trimmed(spline: Spline, a: Any, b: Any, axis: int) -> Spline:
+    """Return the part over [a, b] in one parameter."""
     space = spline.spaces[axis]
     start, end = space.domain
     ends = real_numbers([a, b], "ends", ParameterError)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Self
+from typing import Any, Self, overload
 
 import numpy as np
 
@@ -132,6 +132,16 @@ class Banded(Frozen):
         return len(self.first), self.columns
 
     @property
+    def ndim(self) -> int:
+        """Two, as of every matrix."""
+        return 2
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """The arithmetic of the entries."""
+        return self.entries.dtype
+
+    @property
     def wraps(self) -> bool:
         """Whether some row reaches past the last column, on to the first."""
         return len(self.first) > 0 and int(self.first.max()) + self.entries.shape[1] > self.columns
@@ -139,12 +149,41 @@ class Banded(Frozen):
     def __repr__(self) -> str:
         return f"Banded({self.shape[0]} × {self.shape[1]}, {self.entries.shape[1]} a row)"
 
-    def __matmul__(self, other: Any) -> Array:
-        """Return the product with an array whose first axis has one element a column."""
+    @overload
+    def __matmul__(self, other: Banded) -> Banded: ...
+
+    @overload
+    def __matmul__(self, other: Any) -> Array: ...
+
+    def __matmul__(self, other: Any) -> Banded | Array:
+        """Return the product with another such matrix, or with an array whose first axis has one element a column."""
+        if isinstance(other, Banded):
+            if len(other.first) != self.columns:
+                raise PointError(f"right operand of shape {other.shape}: expected {self.columns} rows")
+            return _product(self, other)
         array = numbers(other, "right operand", PointError)
         if array.ndim == 0 or len(array) != self.columns:
             raise PointError(f"right operand of shape {array.shape}: expected {self.columns} along the first axis")
         return self.apply(array, 0)
+
+    @property
+    def T(self) -> Banded:
+        """The transpose: its rows are as wide as the longest run of rows that one column meets."""
+        rows, columns = self.shape
+        i, c, x = self._places()
+        used = x != 0
+        order = np.lexsort((i[used], c[used]))
+        i, c, x = i[used][order], c[used][order], x[used][order]
+        first, width = _runs(i, c, rows, columns, self.wraps)
+        E = np.full((columns, width), 0 * self.entries.flat[0] if self.entries.size else 0, self.entries.dtype)
+        np.add.at(E, (c, (i - first[c]) % rows), x)
+        return Banded.packed(first, np.full(columns, width - 1), E, rows, wraps=self.wraps)
+
+    def _places(self) -> tuple[Array, Array, Array]:
+        """Return row, column and value of all entries, flat."""
+        rows, width = self.entries.shape
+        column = (self.first[:, None] + np.arange(width)) % self.columns
+        return np.repeat(np.arange(rows), width), column.reshape(-1), self.entries.reshape(-1)
 
     def apply(self, array: Array, axis: int) -> Array:
         """Return `array` with the matrix applied along one axis."""
@@ -157,13 +196,18 @@ class Banded(Frozen):
         apply_rows(self.first, E, P, out, extent(P.shape[2]))
         return along(out, array, axis)
 
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+        """Return the matrix with its zeros: what NumPy and SciPy ask for; `tocsr` needs less room."""
+        if copy is False:
+            raise ValueError("a Banded has to be copied to become an array")
+        return self.toarray().astype(dtype or self.dtype, copy=False)
+
     def toarray(self) -> Array:
         """Return the matrix with its zeros, shape (rows, columns)."""
-        rows, width = self.entries.shape
         dense = empty(self.shape, self.entries.dtype)
         dense[...] = 0 * self.entries.flat[0] if self.entries.size else 0
-        columns = (self.first[:, None] + np.arange(width)) % self.columns
-        np.add.at(dense, (np.arange(rows)[:, None], columns), self.entries)
+        row, column, x = self._places()
+        np.add.at(dense, (row, column), x)
         return dense
 
     def tocsr(self) -> Any:
@@ -174,9 +218,65 @@ class Banded(Frozen):
             from knotwork.errors import MissingExtraError
 
             raise MissingExtraError("tocsr() needs scipy: pip install scipy") from exc
-        rows, width = self.entries.shape
-        columns = (self.first[:, None] + np.arange(width)) % self.columns
-        row = np.broadcast_to(np.arange(rows)[:, None], columns.shape)
-        matrix = coo_array((self.entries.ravel(), (row.ravel(), columns.ravel())), shape=self.shape).tocsr()
+        row, column, x = self._places()
+        matrix = coo_array((x, (row, column)), shape=self.shape).tocsr()
         matrix.eliminate_zeros()
         return matrix
+
+
+def _runs(i: Array, c: Array, rows: int, columns: int, wraps: bool) -> tuple[Array, int]:
+    """Return the first row that each column meets, and the length of the longest run from first to last.
+
+    Of a matrix that wraps around, runs do too: they start after the largest gap. Entries are sorted by column and row.
+    """
+    first, last = np.zeros(columns, np.intp), np.zeros(columns, np.intp)
+    start = np.searchsorted(c, np.arange(columns))
+    met = np.flatnonzero(np.diff(np.append(start, len(c))))
+    stop = np.append(start, len(c))[met + 1]
+    first[met], last[met] = i[start[met]], i[stop - 1]
+    if wraps and len(i):
+        before = np.empty_like(i)
+        before[1:] = i[:-1]
+        before[start[met]] = i[stop - 1] - rows
+        gap = i - before
+        widest = np.lexsort((gap, c))[stop - 1]
+        first[met], last[met] = i[widest], before[widest] + np.where(before[widest] < i[widest], rows, 0)
+        last[met] = first[met] + (last[met] - first[met]) % rows
+    return first, int((last - first).max(initial=0)) + 1
+
+
+def _product(A: Banded, B: Banded) -> Banded:
+    """Return the matrix A·B, each row from the first to the last entry of the rows of B that A combines."""
+    wraps = A.wraps or B.wraps
+    first = B.first[A.first % A.columns]
+    if not wraps:
+        first = B.first[A.first[:, None] + np.arange(A.entries.shape[1])].min(axis=1)
+    width = min(widest(A.first, A.entries, B.first, first, A.columns, B.columns) + B.entries.shape[1], B.columns)
+    E = np.zeros((len(A.first), width), np.result_type(A.entries, B.entries))
+    multiply(A.first, A.entries, B.first, B.entries, first, (A.columns, B.columns), E)
+    return Banded.packed(first, np.full(len(E), width - 1), E, B.columns, wraps)
+
+
+@kernel
+def widest(first, X, other, start, columns, wrap):
+    """Return how much further to the right, at most, than `start` a row begins with which another is combined."""
+    most = 0
+    for i in range(len(first)):
+        for r in range(X.shape[1]):
+            most = max(most, (other[(first[i] + r) % columns] - start[i]) % wrap)
+    return most
+
+
+@kernel
+def multiply(first, X, other, Y, start, columns, E):
+    """E[i] += Σ_r X[i, r] · Y[first[i] + r], where row j of Y begins at column other[j], and row i of E at start[i].
+
+    `columns`: as many as X and Y have.
+    """
+    for i in range(len(first)):
+        for r in range(X.shape[1]):
+            j = (first[i] + r) % columns[0]
+            k = (other[j] - start[i]) % columns[1]
+            for s in range(Y.shape[1]):
+                E[i, k] = E[i, k] + X[i, r] * Y[j, s]
+                k = k + 1 if k + 1 < columns[1] else 0

@@ -14,11 +14,12 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, whole
 from knotwork.arithmetic.counting import Counts
+from knotwork.building import curve, surface
 from knotwork.errors import ParameterError
 from knotwork.insertion.counts.measuring import count
 from knotwork.insertion.face import insert
 from knotwork.insertion.methods.catalogue import METHODS
-from knotwork.spline import Spline, curve, surface
+from knotwork.spline import Spline
 
 #: the methods of Table 4.1, in the order of the text, each in three forms; Table 4.2 leaves out the last one, which is
 #: the same as the one before it for cubics

@@ -14,7 +14,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.counting import Counts
 from knotwork.arithmetic.kernel import Kernel
-from knotwork.errors import ParameterError
+from knotwork.errors import ParameterError, nearest_name
 from knotwork.insertion.methods import boehm, factored, forms, goldman, matrix, oslo, predictions, sablonniere
 from knotwork.insertion.methods.predictions import Formula, Size
 from knotwork.insertion.methods.problem import Problem, in_real_coordinates
@@ -267,4 +267,6 @@ def method_named(name: Any) -> Method:
     try:
         return METHODS[name]
     except (KeyError, TypeError):
-        raise ParameterError(f"method {name!r} given; expected one of {', '.join(METHODS)}") from None
+        raise ParameterError(
+            f"method {name!r} given{nearest_name(name, METHODS)}; expected 'auto' or one of knotwork.insertion.METHODS"
+        ) from None

@@ -1,0 +1,77 @@
+"""Banded matrices answer what users of NumPy and SciPy ask of a matrix."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import knotwork as kw
+import strategies
+from knotwork.errors import PointError
+
+
+@given(strategies.spaces_and_knots(exact=True), st.data())
+def test_the_transpose_and_products_are_those_of_the_dense_matrix(drawn, data):
+    space, knots = drawn
+    finer = space.with_knots(knots)
+    A = kw.insertion_matrix(space, finer)
+    finest = finer.with_knots(data.draw(strategies.new_knots(finer, max_size=3)))
+    B = kw.insertion_matrix(finer, finest)
+    dense = np.asarray(A)
+    assert dense.shape == A.shape
+    assert (np.asarray(A.T) == dense.T).all()
+    assert (np.asarray(A.T.T) == dense).all()
+    assert (np.asarray(B @ A) == np.asarray(B) @ dense).all()
+    assert (np.asarray(A.T @ A) == dense.T @ dense).all()
+    assert (np.asarray(B @ A) == np.asarray(kw.insertion_matrix(space, finest))).all()
+    x = strategies.control_points((A.shape[0],), 7)
+    assert (x @ A == x @ dense).all()
+    assert (A.T @ x == dense.T @ x).all()
+
+
+def test_numpy_and_scipy_take_it():
+    sparse = pytest.importorskip("scipy.sparse")
+    S = kw.SplineSpace(2, [0, 0, 0, 1, 2, 2, 2])
+    A = kw.insertion_matrix(S, S.with_knots(0.5))
+    assert np.asarray(A).shape == (5, 4)
+    assert np.shape(A) == A.shape
+    assert A.ndim == 2
+    assert (sparse.csr_array(A).toarray() == A.toarray()).all()
+    assert (A.tocsr().toarray() == A.toarray()).all()
+    assert (sparse.csr_array(np.eye(5)) @ A == A.toarray()).all()
+    assert np.asarray(A, np.float32).dtype == np.float32
+    assert np.linalg.matrix_rank(A) == 4
+    with pytest.raises(ValueError, match="copied"):
+        np.asarray(A, copy=False)
+
+
+def test_a_product_that_does_not_fit():
+    S = kw.SplineSpace.clamped(2, 5)
+    A = kw.insertion_matrix(S, S.with_knots(0.5))
+    with pytest.raises(PointError, match=r"shape \(6, 5\): expected 5 rows"):
+        A @ A
+
+
+@given(strategies.spaces(exact=True), st.data())
+def test_the_design_matrix_is_the_basis_by_its_definition(space, data):
+    from oracle import Definition
+
+    u = data.draw(strategies.parameters(space))
+    for order in range(3):
+        found = np.asarray(space.basis(u, order))
+        assert (found == np.array([Definition(space).values(x, order) for x in u])).all()
+
+
+def test_the_design_matrix_is_that_of_scipy():
+    scipy = pytest.importorskip("scipy.interpolate")
+    S = kw.SplineSpace.clamped(3, 9)
+    u = np.linspace(0, 1, 40)
+    wanted = scipy.BSpline.design_matrix(u, S.knots, 3).toarray()
+    np.testing.assert_allclose(S.basis(u), wanted, atol=1e-15)
+    assert S.basis([]).shape == (0, 9)
+    with pytest.raises(kw.ParameterError, match="outside the domain"):
+        S.basis(2)
+    with pytest.raises(kw.ParameterError, match="flat list"):
+        S.basis([[0.5]])
