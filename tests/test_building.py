@@ -75,7 +75,7 @@ def test_knots_of_opennurbs():
         (5, 3, [0, 0.5, 1], False, r"OpenCASCADE, .* SplineSpace\.from_breaks\(3, knots, multiplicities\)"),
         (5, 3, [0, 1, 2], True, r"from_breaks\(3, knots, multiplicities, periodic=True\)"),
         (7, 2, range(-2, 8), True, r"wrapped, .* knots\[2:-2\], points\[2:\]"),
-        (7, 2, range(-1, 7), True, r"from_opennurbs\(2, knots, periodic=True\) takes them, with points\[2:\]"),
+        (8, 3, range(-2, 8), True, r"from_opennurbs\(3, knots, periodic=True\) takes them, with points\[3:\]"),
         (4, 3, [0, 0, 0, 0, 0, 0, 1, 1, 1], False, "9 knots given; 4 points of degree 3 take 8$"),
     ],
 )
@@ -110,7 +110,7 @@ def test_several_axes_in_one_call():
     for call, says in [
         (lambda: kw.insert(s, {0: 0.5, -2: 0.5}), "expected each parameter once"),
         (lambda: kw.insert(s, {2: 0.5}), "axis 2 given"),
-        (lambda: kw.insert(s, [[0.5], [0.5], [0.5]]), "3 entries given; this spline has 2 parameters"),
+        (lambda: kw.trim(s, [(0, 1)] * 3), "3 entries given; this spline has 2 parameters"),
         (lambda: kw.elevate(s, (1, 2, 3)), "3 entries given"),
         (lambda: kw.elevate(s, (1, -1)), "times -1 given"),
         (lambda: kw.trim(s, 0.5), "expected two numbers, or a pair"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from numbers import Number
 from typing import Any, Self, cast
@@ -428,17 +428,17 @@ class Spline(Frozen):
             raise ParameterError(f"axis {axis!r} given; this spline has parameters 0 … {len(self.spaces) - 1}")
         return int(axis) % len(self.spaces)
 
-    def by_axis(self, given: Any, axis: int, single: Callable[[Any], bool]) -> list[tuple[int, Any]]:
+    def by_axis(self, given: Any, axis: int) -> list[tuple[int, Any]]:
         """Return what was given, for one axis or for several, as pairs of an axis and what is for it.
 
-        A mapping has axes as keys; a list or tuple that is no `single` value has an entry for each parameter, or None.
+        A mapping has axes as keys, a list or tuple an entry or None for each parameter.
         """
         if isinstance(given, Mapping):
             pairs = [(self.axis(key), value) for key, value in given.items()]
             if len({key for key, _ in pairs}) < len(pairs):
                 raise ParameterError(f"axes {list(given)} given; expected each parameter once")
             return pairs
-        if not isinstance(given, list | tuple) or single(given):
+        if not isinstance(given, list | tuple):
             return [(self.axis(axis), given)]
         if len(given) != len(self.spaces):
             raise ParameterError(f"{len(given)} entries given; this spline has {len(self.spaces)} parameters")

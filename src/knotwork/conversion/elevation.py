@@ -124,7 +124,7 @@ def elevate(spline: Spline, times: int | Mapping[int, int] | Sequence[int | None
     >>> kw.elevate(kw.surface([[0, 1], [2, 3]], degree=1), (2, 1)).degree
     (3, 2)
     """
-    wanted = spline.by_axis(times, axis, lambda _: False)
+    wanted = spline.by_axis(times, axis)
     for each, count in wanted:
         more = whole(count, "times", 0, ParameterError)
         space = spline.spaces[each]

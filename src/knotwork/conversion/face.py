@@ -156,7 +156,7 @@ def _targets(spline: Spline, target: Any, axis: int | None) -> dict[int, SplineS
     else:
         axes = list(range(len(spline.spaces)))
         if isinstance(target, Mapping) or (isinstance(target, list | tuple) and any(each is None for each in target)):
-            pairs = spline.by_axis(target, 0, lambda _: False)
+            pairs = spline.by_axis(target, 0)
             axes, target = [key for key, _ in pairs], [each for _, each in pairs]
     spaces = [target] if isinstance(target, SplineSpace) else list(target) if isinstance(target, list | tuple) else []
     if not spaces or not all(isinstance(space, SplineSpace) for space in spaces):

@@ -54,8 +54,8 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: MethodName = "auto
     >>> kw.insert(net, {0: 0.5, 1: [0.25, 0.75]})
     <surface of 3 × 4 numbers, degree 1 × 1>
     """
-    if isinstance(knots, Mapping) or (len(spline.spaces) > 1 and not _flat(knots)):
-        for each, new in spline.by_axis(knots, axis, _flat):
+    if isinstance(knots, Mapping) or _by_axis(knots, len(spline.spaces)):
+        for each, new in spline.by_axis(knots, axis):
             spline = insert(spline, new, each, method)
         return spline
     if method != "auto":
@@ -101,11 +101,10 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: MethodNam
     return matrix_to(space, refined, missing_knots(space, refined))
 
 
-def _flat(knots: Any) -> bool:
-    """Tell whether these are the knots for one parameter: a number, or a list of numbers."""
-    return not isinstance(knots, list | tuple) or not any(
-        x is None or isinstance(x, list | tuple | np.ndarray) for x in knots
-    )
+def _by_axis(knots: Any, k: int) -> bool:
+    """Tell whether these are knots for each of several parameters: a list or None for each, not a list of numbers."""
+    several = k > 1 and isinstance(knots, list | tuple) and len(knots) == k
+    return several and all(x is None or isinstance(x, list | tuple | np.ndarray) for x in knots)
 
 
 def _method(name: str) -> Method:

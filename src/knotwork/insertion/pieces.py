@@ -80,7 +80,7 @@ def trim(spline: Spline, a: Any, b: Any = None, axis: int = 0) -> Spline:
     [[2.0, 4.0], [4.0, 6.0]]
     """
     if b is None:
-        parts = spline.by_axis(a, axis, lambda _: False)
+        parts = spline.by_axis(a, axis)
         if not all(isinstance(part, list | tuple) and len(part) == 2 for _, part in parts):
             raise ParameterError(f"ends {a!r} given; expected two numbers, or a pair of them for each parameter")
     else:
