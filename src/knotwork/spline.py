@@ -202,6 +202,12 @@ class Spline(Frozen):
             marks.append("exact" if self.coefficients.dtype == object else str(self.coefficients.dtype))
         return f"<{kind} of {counts} {values}, {', '.join(filter(None, marks))}>"
 
+    def _repr_svg_(self) -> str | None:
+        """Return what a notebook shows of a curve: itself and its control polygon."""
+        from knotwork.geometry.thumbnails import thumbnail  # a room above, loaded when it is asked for
+
+        return thumbnail(self)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _restore, (type(self), self.spaces, self.coefficients, self.rational)
 
@@ -389,7 +395,7 @@ class Spline(Frozen):
         --------
         >>> c = Spline(SplineSpace.uniform(1, 4, periodic=True), [0, 1, 2, 3])
         >>> c.with_seam(0.5).space.knots.tolist(), c.with_seam(0.5).coefficients.tolist()
-        ([0.5, 0.75, 1.0, 1.25, 1.5], [3.0, 0.0, 1.0, 2.0])
+        ([0.5, 0.75, 1.0, 1.25, 1.5], [2.0, 3.0, 0.0, 1.0])
         """
         from knotwork.conversion.periods import with_seam  # a room above: loaded when it is asked for
 

@@ -141,5 +141,5 @@ def test_bad_input():
         relative_error_bound(kw.Spline(space, [0.0, 1]), 0.5)
     with pytest.raises(PointError, match="precision is not known; expected floats or Fractions"):
         relative_error_bound(kw.Spline(space, [mpmath.mpf(1), mpmath.mpf(2)]), space.with_knots(0.5))
-    with pytest.raises(ParameterError, match="2 parameters has no single space"):
+    with pytest.raises(KnotError, match="a SplineSpace for each parameter"):
         relative_error_bound(kw.surface(np.zeros((4, 4))), space)
