@@ -138,6 +138,40 @@ def test_exact_if_the_spline_happens_to_lie_in_the_target(spaces, seed, times, h
     assert (values(target, found.spline.coefficients, u) == values(both, f.coefficients, u)).all()
 
 
+def test_interpolation_onto_a_target_that_jumps():
+    """Each part for itself: what lies in the target comes back, exactly in exact arithmetic."""
+    target = kw.SplineSpace(2, np.array([F(x) for x in (-1, 0, 0, 1, 1, 1, 2, 3, 3, 4)], object))
+    inside = kw.Spline(target, np.array([F(x * x % 7) for x in range(target.dimension)], object))
+    finer = kw.insert(inside, [F(1, 2), F(2)])
+    back = kw.convert(finer, target, how="interpolation")
+    assert back.spline == inside
+    assert back.exact
+    f = kw.curve([0, 3, 1, 2, 5, 4, 4], 3)
+    near = kw.convert(f, kw.SplineSpace(3, [0] * 4 + [0.5] * 4 + [1] * 4), how="interpolation")
+    u = np.linspace(0, 1, 200)
+    assert np.abs(near.spline(u) - f(u)).max() <= near.bound < 2
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4])
+@pytest.mark.parametrize("count", [6, 7])
+def test_interpolation_onto_a_period_meets_the_nodes(degree, count):
+    rng = np.random.default_rng(degree)
+    target = kw.SplineSpace(
+        degree, np.append(np.arange(count) + rng.uniform(0, 0.5, count), count + 0.5), periodic=True
+    )
+    inside = kw.Spline(target, rng.standard_normal((count, 2)))
+    back = kw.convert(kw.insert(inside, [1.7, 3.1]), target, how="interpolation")
+    np.testing.assert_allclose(back.spline.points, inside.points, atol=1e-12)
+    other = kw.Spline(target.with_knots([2.9, 4.9]), rng.standard_normal((count + 2, 2)))
+    found = kw.convert(other, target, how="interpolation")
+    np.testing.assert_allclose(found.spline(target.nodes), other(target.nodes), atol=1e-12)
+    u = np.linspace(*target.domain, 300)
+    assert np.abs(found.spline(u) - other(u)).max() <= found.bound
+    exact = kw.convert(other.in_exact_arithmetic(), target, how="interpolation").spline
+    x = exact.space.nodes[2]
+    assert (exact(x) == other.in_exact_arithmetic()(x)).all()
+
+
 def test_interpolation_is_exact_where_it_can_be_and_meets_the_extrema_where_not():
     from knotwork.conversion.chebyshev import chebyshev
 
@@ -297,7 +331,13 @@ def test_what_is_refused():
         (f, kw.SplineSpace.clamped(2, 6), {"how": "oslo"}, ParameterError, "from degree 3 to 2"),
         (f, kw.SplineSpace.bezier(3, [0, 2]), {}, KnotError, "expected equal domains"),
         (f, closed, {}, KnotError, "clamp opens"),
-        (ring, closed.with_knots(0.1), {"how": "interpolation"}, KnotError, "periodic"),
+        (
+            ring,
+            kw.SplineSpace(3, [0.0] * 4 + [0.5, 1], periodic=True),
+            {"how": "interpolation"},
+            KnotError,
+            "may jump at 0",
+        ),
     ]
     for spline, target, options, error, message in cases:
         with pytest.raises(error, match=message):

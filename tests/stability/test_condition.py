@@ -220,6 +220,23 @@ def test_what_is_no_refinement(refined, message):
         condition(kw.SplineSpace.bezier(2, [0, 1]), refined)
 
 
-def test_periodic_spaces_have_none():
-    with pytest.raises(KnotError, match=r"is periodic; .* clamp it first"):
-        condition(kw.SplineSpace.uniform(2, 5, periodic=True), 0.1)
+def test_refinements_of_a_period_have_none():
+    space = kw.SplineSpace.uniform(2, 5, periodic=True)
+    with pytest.raises(KnotError, match=r"is periodic: .* an odd number around a period cannot; .* clamp it first"):
+        condition(space, space.with_knots(0.1))
+    with pytest.raises(KnotError, match="has 2 coefficients around a period; one knot changes 3 different ones"):
+        condition(kw.SplineSpace.uniform(2, 2, periodic=True), 0.1)
+
+
+@given(strategies.spaces(periodic=True, exact=True, degrees=st.integers(0, 4)), st.data())
+def test_one_knot_of_a_period_does_what_it_does_in_the_line_of_all_turns(space, data):
+    n = space.degree
+    assume(space.dimension > n)
+    new = data.draw(strategies.new_knots(space, max_size=1))
+    assume(new)
+    f = extremal(space, new[0])
+    after = kw.insert(f, new[0]).coefficients
+    assert max(abs(after).tolist()) <= 1
+    t = space.unrolled.knots
+    line = kw.SplineSpace(n, t[space.unrolled.zero - n :])
+    assert condition(space, new[0]) == max(abs(f.coefficients).tolist()) == condition(line, new[0])

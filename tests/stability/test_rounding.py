@@ -8,7 +8,7 @@ import pytest
 
 import knotwork as kw
 import oracle
-from knotwork.errors import KnotError, ParameterError, PointError
+from knotwork.errors import KnotError, PointError
 from knotwork.insertion import auto
 from knotwork.stability import condition, extremal, relative_error_bound
 
@@ -108,6 +108,23 @@ def test_the_bound_is_the_condition_number_times_a_few_roundings():
         most = (10 * levels + 1) * UNIT * condition(space, refined)
         assert relative_error_bound(extremal(space, refined), refined) == pytest.approx(most, rel=1e-12)
         assert relative_error_bound(kw.Spline(space, [1, 2, 3, 4, 5.0]), refined) < most
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("rational", [False, True])
+def test_surfaces(dtype, rational):
+    """Against the refinement in Fractions of the very same numbers."""
+    rng = np.random.default_rng(8)
+    for degrees in ((1, 3), (4, 2)):
+        spaces = [kw.SplineSpace.clamped(n, 7) for n in degrees]
+        c = rng.uniform(-1, 1, (7, 7, 3))
+        c[..., -1] = abs(c[..., -1]) + 0.5
+        f = kw.Spline(spaces, c.astype(dtype), rational)
+        new = [rng.uniform(0, 1, 4).tolist(), rng.uniform(0, 1, 3).tolist()]
+        refined = [space.with_knots(x) for space, x in zip(spaces, new, strict=True)]
+        true = kw.insert(f.in_exact_arithmetic(), new).coefficients
+        error = abs(oracle.fractions(kw.insert(f, new).coefficients) - true).max() / abs(true).max()
+        assert 0 < error <= relative_error_bound(f, refined) < (1e-13 if dtype is np.float64 else 1e-5)
 
 
 def test_tiny_coefficients():

@@ -81,6 +81,8 @@ def _condition(spline: kw.Spline, knots: Sequence[float], parts: int | None, axi
         row |= {
             "insertion": kw.stability.condition(space, refined),
             "worst": float(kw.stability.worst(space.order)),
-            "error": kw.stability.relative_error_bound(spline, refined) if spline.parameters == 1 else None,
+            "error": kw.stability.relative_error_bound(
+                spline, [refined if i == axis else each for i, each in enumerate(spline.spaces)]
+            ),
         }
     return row

@@ -13,6 +13,7 @@ most as large as the old one, and all stay the same only if no value was above 1
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -21,7 +22,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import KnotError
 from knotwork.evaluation import Basis
-from knotwork.knots import nodes
+from knotwork.knots import distinct, nodes
 from knotwork.linear.banded import Banded
 from knotwork.linear.elimination import solve
 from knotwork.space import SplineSpace
@@ -67,7 +68,10 @@ def chebyshev(space: SplineSpace) -> Chebyshev:
     ([-1.0, -0.5, 0.5, 1.0], [-1.0, 5.0, -5.0, 1.0])
     """
     if space.periodic:
-        raise KnotError(f"{space!r} is periodic; a Chebyshev spline takes a space with ends")
+        raise KnotError(
+            f"{space!r} is periodic; a Chebyshev spline takes a space with ends: as many extrema as the dimension "
+            f"alternate in sign, and an odd number around a period cannot"
+        )
     (a, b), n, N = space.domain, space.degree, space.dimension
     t = in_floats(space.knots, "knots", KnotError)
     inside = np.clip(t, float(a), float(b))
@@ -89,6 +93,17 @@ def chebyshev(space: SplineSpace) -> Chebyshev:
         if not abs(better.coefficients).sum() < abs(best.coefficients).sum():
             return Chebyshev(best, finer)
         best, x = better, finer
+
+
+def between_jumps(space: SplineSpace) -> list[SplineSpace]:
+    """Return the spaces of the parts of splines between the knots where they may jump; of a period, itself."""
+    n, t, (a, b) = space.degree, space.knots, space.domain
+    x, counts = distinct(t)
+    jumps = x[(counts == n + 1) & (x > a) & (x < b)]
+    if space.periodic or not len(jumps):
+        return [space]
+    cuts = [0, *np.searchsorted(t, jumps, "left").tolist(), space.dimension]
+    return [SplineSpace(n, t[lo : hi + n + 1]) for lo, hi in itertools.pairwise(cuts)]
 
 
 def _alternating(space: SplineSpace, x: Array, values: Array) -> Spline:

@@ -9,13 +9,15 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, require_finite
 from knotwork.conversion.certificate import Difference, difference, rounding
-from knotwork.conversion.chebyshev import chebyshev
+from knotwork.conversion.chebyshev import between_jumps, chebyshev
 from knotwork.conversion.elevation import raised
+from knotwork.conversion.interpolation import solution
 from knotwork.conversion.nesting import common_refinement, embedding, holds
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.conversion.polynomials import BASES, Basis, PolynomialPieces, to_pieces
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import design_matrix
+from knotwork.insertion.pieces import trim
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.linear.elimination import solve
 from knotwork.linear.least_squares import least_squares
@@ -68,7 +70,8 @@ def convert(
         The only parameter to convert.
     how : {"auto", "oslo", "interpolation", "least-squares"}
         ``"oslo"``: the generalised Oslo algorithm, the coefficients of the operator of de Boor and Fix; not for a lower
-        degree. ``"interpolation"``: at the extrema of the target's Chebyshev spline. ``"least-squares"``: the
+        degree. ``"interpolation"``: at the extrema of the target's Chebyshev spline, part by part between
+        jumps; onto a period at its nodes. ``"least-squares"``: the
         coefficients of the difference on the common refinement, times √(t[i+n+1] − t[i]), have the least squares.
         ``"auto"``: Oslo where the target holds every spline of the space, where no row of the matrix sums to
         more than 16 in absolute value, or where exact arithmetic shows that nothing is lost; otherwise least squares.
@@ -84,7 +87,8 @@ def convert(
     Raises
     ------
     KnotError
-        If domains differ, only one space is periodic, or interpolation cannot be done in the target.
+        If domains differ, only one space is periodic, or interpolation cannot be done in the target: values at the
+        nodes of a period may not determine a spline.
     ParameterError
         If `how` is not one of the four or not possible, or targets and parameters do not match.
     PointError
@@ -223,7 +227,24 @@ def by_least_squares(spline: Spline, axis: int, target: SplineSpace, ends: str =
 
 
 def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
-    """Interpolate at the extrema of the Chebyshev spline of the target."""
+    """Interpolate at the extrema of the target's Chebyshev spline, on each part between jumps; of a period at nodes."""
+    space = spline.spaces[axis]
+    if target.periodic:
+        jumps = target.joints[0][target.joints[1] > target.degree]
+        if target.degree and len(jumps):
+            raise KnotError(
+                f"splines of {target!r} may jump at {jumps[0]}: interpolation of a period takes continuous ones"
+            )
+        A = design_matrix(target, target.nodes)
+        values = design_matrix(space, target.nodes).apply(spline.coefficients, axis)
+        return solved(spline, axis, target, values, lambda y: solution(A, y))
+    parts = between_jumps(target)
+    found = [_at_extrema(spline if len(parts) == 1 else trim(spline, *p.domain, axis), axis, p) for p in parts]
+    return spline.with_axis(axis, target, np.concatenate([part.coefficients for part in found], axis))
+
+
+def _at_extrema(spline: Spline, axis: int, target: SplineSpace) -> Spline:
+    """Interpolate at the extrema of the Chebyshev spline of a target without jumps."""
     x = chebyshev(target).extrema
     if target.exact:
         x = exact(x, "extrema", KnotError)

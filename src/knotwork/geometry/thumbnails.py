@@ -37,23 +37,18 @@ def thumbnail(spline: Spline) -> str | None:
         scale = room / np.where(size > 0, size, 1) if graph else np.full(2, (room / np.where(size > 0, size, 1)).min())
         if not graph and not size.any():
             scale = np.ones(2)
-        height = size[1] * scale[1] + 2 * MARGIN
-
-    def placed(line: Array) -> Array:
-        x, y = ((line - low) * scale).T
-        return np.stack([x + MARGIN, height - MARGIN - y], axis=1)
-
-    drawn = [placed(line) for line in lines]
-    net = placed(polygon)
-    if not all(all_finite(line) for line in [*drawn, net]):
+        drawn = [(line - low) * scale for line in [polygon, *lines]]
+    if not all(map(all_finite, drawn)):
         return None
+    width, height = np.ceil((size * scale) + 2 * MARGIN).astype(int).tolist()
+    net, *curve = (np.array([MARGIN, height - MARGIN]) + line * [1, -1] for line in drawn)
     dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2"/>' for x, y in net) if len(net) <= DOTS else ""
     closed = "Z" if spline.space.periodic and not graph else ""
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH:.0f}" height="{height:.0f}" '
-        f'viewBox="0 0 {WIDTH:.0f} {height:.0f}"><title>{escape(repr(spline))}</title>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+        f'viewBox="0 0 {width} {height}"><title>{escape(repr(spline))}</title>'
         f'<path d="{_path(net)}{closed}" fill="none" stroke="#a3a8ae"/><g fill="#a3a8ae">{dots}</g>'
-        f'<path d="{"".join(map(_path, drawn))}" fill="none" stroke="#1f3a5f" stroke-width="1.5"/></svg>'
+        f'<path d="{"".join(map(_path, curve))}" fill="none" stroke="#1f3a5f" stroke-width="1.5"/></svg>'
     )
 
 

@@ -38,7 +38,7 @@ def condition(space: SplineSpace, refined: Any) -> Any:
     Parameters
     ----------
     space : SplineSpace
-        Not periodic.
+        A periodic one has at least ``degree + 1`` knots, and takes one new knot.
     refined : number or SplineSpace
         One new knot, or a refinement of `space`.
 
@@ -50,7 +50,8 @@ def condition(space: SplineSpace, refined: Any) -> Any:
     Raises
     ------
     KnotError
-        If `space` is periodic, the knot cannot be inserted, or `refined` is no refinement.
+        If the knot cannot be inserted, `refined` is no refinement, or `space` is periodic and several knots are given
+        or too few are there.
 
     Notes
     -----
@@ -88,8 +89,11 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
     >>> f.coefficients.tolist(), kw.insert(f, 0.5).coefficients.tolist()
     ([1.0, -3.0, 1.0], [1.0, -1.0, -1.0, 1.0])
     """
-    if space.periodic:
-        raise KnotError(f"{space!r} is periodic; condition numbers are those of spaces with ends: clamp it first")
+    if isinstance(refined, SplineSpace) and space.periodic:
+        raise KnotError(
+            f"{space!r} is periodic: refined coefficients of the extremal spline alternate in sign, and an odd number "
+            f"around a period cannot; expected one new knot, or a space with ends: clamp it first"
+        )
     if isinstance(refined, SplineSpace):
         A = insertion_matrix(space, refined)
         x, y = space.nodes, refined.nodes
@@ -98,11 +102,20 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
     _, new = space.refinement(refined)
     if len(new) != 1:
         raise KnotError(f"{len(new)} knots given; expected one, or a SplineSpace that refines this one")
-    t, s, n = space.knots, new.item(), space.degree
-    q = min(np.searchsorted(t, s, "right"), np.searchsorted(t, space.domain[1], "left")) - 1
+    s, n = new.item(), space.degree
+    if space.periodic and space.dimension <= n:
+        raise KnotError(
+            f"{space!r} has {space.dimension} coefficients around a period; one knot changes {n + 1} different ones"
+        )
+    t = space.unrolled.knots
+    last = len(t) if space.periodic else int(np.searchsorted(t, space.domain[1], "left"))
+    q = min(int(np.searchsorted(t, s, "right")), last) - 1
     c = np.full(space.dimension, s - s + 1, t.dtype)
-    c[q - n : q + 1] = heights(t[q - n : q + n + 2].tolist(), s)
     c[1::2] = -c[1::2]
+    signs = (-1) ** (np.arange(n + 1) + (0 if space.periodic else q - n))
+    c[space.unrolled.own(np.arange(q - n, q + 1))] = signs * np.array(
+        heights(t[q - n : q + n + 2].tolist(), s), t.dtype
+    )
     return Spline(space, c)
 
 

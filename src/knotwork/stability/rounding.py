@@ -97,6 +97,6 @@ def relative_error_bound(spline: Spline, refined: SplineSpace | Sequence[SplineS
         return 0.0
     # a product too small for a normal number loses up to half of the smallest one
     error = (grown - 1) * (1 + 2.0**-40) if len(targets) > 1 else error
-    absolute = error * float(abs(c).max()) + levels * float(np.finfo(c.dtype).smallest_subnormal)
+    absolute = error * float(abs(c).max()) + (levels + len(targets) - 1) * float(np.finfo(c.dtype).smallest_subnormal)
     least = float(abs(refined_spline.coefficients).max()) - absolute
     return absolute / least if least > 0 else math.inf

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from fractions import Fraction
 from typing import Any, Self
@@ -10,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from knotwork.arithmetic.arrays import real_numbers, whole
-from knotwork.conversion.chebyshev import chebyshev
+from knotwork.conversion.chebyshev import between_jumps, chebyshev
 from knotwork.errors import KnotError, ParameterError
 from knotwork.space import SplineSpace
 from knotwork.stability.condition_numbers import condition
@@ -109,7 +108,8 @@ def kappa(space: SplineSpace) -> float:
     Raises
     ------
     KnotError
-        If the space is periodic or a basis function vanishes on the domain.
+        If the space is periodic (signs cannot alternate around it if the dimension is odd, so no Chebyshev spline tells
+        the number), or a basis function vanishes on the domain.
 
     Notes
     -----
@@ -121,12 +121,7 @@ def kappa(space: SplineSpace) -> float:
     >>> round(kw.stability.kappa(kw.SplineSpace.bezier(3, [0, 1])), 12)
     5.0
     """
-    n, t = space.degree, space.knots
-    a, b = space.domain
-    jumps = [] if space.periodic else [x for x in space.breaks.tolist() if a < x < b and space.multiplicity(x) == n + 1]
-    cuts = [0, *np.searchsorted(t, np.array(jumps, t.dtype), "left").tolist(), space.dimension]
-    parts = [SplineSpace(n, t[lo : hi + n + 1]) for lo, hi in itertools.pairwise(cuts)] if jumps else [space]
-    return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in parts)
+    return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in between_jumps(space))
 
 
 def basis_condition(k: int) -> Fraction:
