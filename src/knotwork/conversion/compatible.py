@@ -145,7 +145,7 @@ def join(*curves: Spline, tolerance: Any = 0) -> Conversion[Spline]:
     --------
     >>> import knotwork as kw
     >>> left, right = kw.split(kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]]), 0.25)
-    >>> kw.join(left, right).spline.points.tolist()
+    >>> kw.join(left, right).spline.points.round(12).tolist()
     [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.0]]
     """
     chain = _listed(curves[0] if len(curves) == 1 and not isinstance(curves[0], Spline) else curves, "join")
