@@ -85,6 +85,7 @@ def test_the_face_of_the_command(run):
     assert set(main.commands) == {
         "info",
         "insert",
+        "edit",
         "remove",
         "reduce",
         "bezier",
