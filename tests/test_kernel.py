@@ -301,6 +301,7 @@ def test_every_kernel_is_tried(both):
     test_plain_and_compiled_agree_on_progressive_curves(both, np.float64, np.float64)
     test_plain_and_compiled_agree_on_progressive_curves(both, np.complex128, np.complex128)
     test_plain_and_compiled_agree_on_elimination(both)
+    test_plain_and_compiled_agree_on_lowering(both)
     test_plain_and_compiled_agree_on_shapes(both)
     test_plain_and_compiled_agree_on_methods_of_insertion(both, np.float64)
     reached = set(both) | TEMPLATES
