@@ -164,8 +164,8 @@ if not TYPE_CHECKING:  # a type checker knows all names, and refuses others
         for part, names in _PARTS.items():
             if name == part or name in names:
                 module = _importlib.import_module(f"knotwork.{part}")
-                globals().update({part: module} | {each: getattr(module, each) for each in names})
-                return globals()[name]
+                globals()[part] = module
+                return globals().setdefault(name, module if name == part else getattr(module, name))
         raise AttributeError(
             f"module 'knotwork' has no attribute {name!r}", name=name, obj=_importlib.import_module("knotwork")
         )

@@ -92,7 +92,7 @@ def test_what_cannot_be_is_refused(given, error, says):
 
 def test_a_period_whose_values_do_not_determine_it():
     """Of even degree at an even number of knots: a zigzag vanishes there."""
-    from knotwork.conversion.interpolation import solution
+    from knotwork.linear.collocation import solution
 
     space = kw.SplineSpace(2, [F(k) for k in range(7)], periodic=True)
     y = np.array([[F(k)] for k in (1, 0, 2, 0, 3, 1)])

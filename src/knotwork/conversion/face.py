@@ -11,7 +11,6 @@ from knotwork.arithmetic.arrays import Array, exact, require_finite
 from knotwork.conversion.certificate import Difference, difference, rounding
 from knotwork.conversion.chebyshev import between_jumps, chebyshev
 from knotwork.conversion.elevation import raised
-from knotwork.conversion.interpolation import solution
 from knotwork.conversion.nesting import common_refinement, embedding, holds
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.conversion.polynomials import BASES, Basis, PolynomialPieces, to_pieces
@@ -19,6 +18,7 @@ from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.evaluation import design_matrix
 from knotwork.insertion.pieces import trim
 from knotwork.linear.banded import Banded, along, as_blocks
+from knotwork.linear.collocation import solution
 from knotwork.linear.elimination import solve
 from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace

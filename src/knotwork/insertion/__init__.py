@@ -3,12 +3,12 @@
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from knotwork.insertion.elements import Extraction, extraction
 from knotwork.insertion.face import insert, insertion_matrix
 from knotwork.insertion.pieces import clamp, from_bezier, split, to_bezier, trim
 
 if TYPE_CHECKING:
     from knotwork.insertion.counts.measuring import count
+    from knotwork.insertion.elements import Extraction, extraction
     from knotwork.insertion.methods.catalogue import METHODS, Method
     from knotwork.insertion.methods.factored import Startup
 
@@ -30,10 +30,12 @@ __all__ = [
 
 #: what is loaded when it is first asked for
 _LATER = {
+    "Extraction": "insertion.elements",
     "METHODS": "insertion.methods.catalogue",
     "Method": "insertion.methods.catalogue",
     "Startup": "insertion.methods.factored",
     "count": "insertion.counts.measuring",
+    "extraction": "insertion.elements",
 }
 
 
