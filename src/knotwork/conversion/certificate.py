@@ -18,7 +18,7 @@ m = Σ 12 (k + 1) over the degrees k that are passed, the last included. The bou
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -99,14 +99,20 @@ def _over_both(f: Spline, g: Spline) -> tuple[Certificate, Lifted]:
     return Certificate(f, spaces), lifted(g, spaces)
 
 
-def lifted(spline: Spline, spaces: Sequence[SplineSpace]) -> Lifted:
-    """Return the coefficients of a spline over spaces that hold its own."""
+def lifted(
+    spline: Spline, spaces: Sequence[SplineSpace], matrix: Callable[[SplineSpace, SplineSpace], Banded] | None = None
+) -> Lifted:
+    """Return the coefficients of a spline over spaces that hold its own.
+
+    `matrix` leads from each space to a finer one; by default `embedding`, which takes clamped or periodic spaces.
+    """
+    matrix = matrix or embedding
     c, m = by_coordinate(spline), 0
     local = spline.rational and c.dtype != object
     sizes = np.abs(c) if local else largest_of(np.abs(c))
     for axis, (space, finer) in enumerate(zip(spline.spaces, spaces, strict=True)):
         if space != finer:
-            A = embedding(space, finer)
+            A = matrix(space, finer)
             c, m = A.apply(c, axis), m + roundings(space, finer)
             if local:
                 sizes = largest_in_rows(A, sizes, axis, finer)
@@ -276,11 +282,15 @@ class Tolerance:
                 f"{what} would change the spline by up to {float(change.largest):.6g}; tolerance "
                 f"{self.given.tolist()} given"
             )
-        above = (change.bound > self.given) & (self.given > 0)
-        if above.any():
-            warnings.warn(
-                f"{what}: the bound is {float(change.largest):.6g}, above the tolerance {self.given.tolist()}: numbers "
-                f"of this size and precision are no closer",
-                RoundingWarning,
-                stacklevel=3,
-            )
+        warn_of_rounding(what, change.bound, self.given, stacklevel=4)
+
+
+def warn_of_rounding(what: str, bound: Array, given: Array, stacklevel: int) -> None:
+    """Warn, naming the bound of what `what` did, where rounding takes it above a tolerance that is not 0."""
+    if ((bound > given) & (given > 0)).any():
+        warnings.warn(
+            f"{what}: the bound is {float(bound.max()):.6g}, above the tolerance {given.tolist()}: numbers of this "
+            f"size and precision are no closer",
+            RoundingWarning,
+            stacklevel=stacklevel,
+        )

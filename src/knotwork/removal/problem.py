@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.errors import RoundingWarning
+from knotwork.conversion.certificate import warn_of_rounding
 from knotwork.insertion.refinement import matrix_to
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.linear.least_squares import least_squares
@@ -116,14 +115,7 @@ class Original:
 
     def told(self, trial: Trial, what: str) -> Any:
         """Return the bound of a fit as the tolerance was given; warn if rounding takes it above one that is not 0."""
-        given = self.tolerance.given
-        if ((trial.bound > given) & (given > 0)).any():
-            warnings.warn(
-                f"{what}: the bound is {float(trial.bound.max()):.6g}, above the tolerance {given.tolist()}: numbers "
-                f"of this size and precision are no closer",
-                RoundingWarning,
-                stacklevel=3,
-            )
+        warn_of_rounding(what, trial.bound, self.tolerance.given, stacklevel=4)
         return self.tolerance.reported(trial.bound)
 
     def measured(self, other: Spline, gone: Array) -> Trial:

@@ -16,15 +16,12 @@ from __future__ import annotations
 
 import heapq
 import math
-import warnings
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.conversion.certificate import Certificate, Lifted, by_coordinate, largest_in_rows, largest_of, roundings
-from knotwork.errors import RoundingWarning
+from knotwork.conversion.certificate import Certificate, Lifted, lifted, warn_of_rounding
 from knotwork.insertion.face import insertion_matrix
 from knotwork.linear.banded import as_blocks
 from knotwork.removal.knot_lines import Axis, Measure, cost, increase, take_line, take_out_line
@@ -119,7 +116,7 @@ class Judge:
 
     def judged(self, other: Spline) -> Judged:
         """Return a fit with its bound: as `Certificate.difference`, but with lengths where those count."""
-        found, bound = changes(self.certificate, put_back(other, self.certificate.spaces))
+        found, bound = changes(self.certificate, lifted(other, self.certificate.spaces, insertion_matrix))
         if other.rational and other.coefficients[..., -1].min() <= 0:
             return Judged(other, self.floor + math.inf, self.floor + math.inf)
         d = found.shape[-1]
@@ -133,33 +130,12 @@ class Judge:
 
     def told(self, fit: Judged) -> Any:
         """Return the bound as the tolerance was given; warn where rounding takes it above one that is not 0."""
-        given = self.tolerance.given
-        if ((fit.bound > given) & (given > 0)).any():
-            warnings.warn(
-                f"reduce: the bound is {float(fit.bound.max()):.6g}, above the tolerance {given.tolist()}: numbers of "
-                f"this size and precision are no closer",
-                RoundingWarning,
-                stacklevel=4,
-            )
+        warn_of_rounding("reduce", fit.bound, self.tolerance.given, stacklevel=5)
         return self.tolerance.reported(fit.bound)
 
     def admits(self, fit: Judged) -> bool:
         """Tell whether a fit keeps the tolerance, or what it changed is explained by rounding."""
         return bool(((fit.bound <= self.tolerance.given) | (fit.found <= self.floor)).all())
-
-
-def put_back(spline: Spline, spaces: Sequence[SplineSpace]) -> Lifted:
-    """Return the coefficients over all knots again, ends as they are; see `lifted`, which takes clamped ones."""
-    c, m = by_coordinate(spline), 0
-    local = spline.rational and c.dtype != object
-    sizes = np.abs(c) if local else largest_of(np.abs(c))
-    for axis, (space, finer) in enumerate(zip(spline.spaces, spaces, strict=True)):
-        if space != finer:
-            A = insertion_matrix(space, finer)
-            c, m = A.apply(c, axis), m + roundings(space, finer)
-            if local:
-                sizes = largest_in_rows(A, sizes, axis, finer)
-    return Lifted(c, sizes, m)
 
 
 def changes(certificate: Certificate, other: Lifted) -> tuple[Array, Array]:
