@@ -10,10 +10,9 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
 from knotwork.files.document import Document
 from knotwork.geometry.bezier import joined, raised
-from knotwork.geometry.lengths import increasing
 from knotwork.insertion import to_bezier
 from knotwork.removal.shapes.bezier import EFFORTS, reduce_bezier
-from knotwork.removal.shapes.reducing import CORNER
+from knotwork.removal.shapes.reducing import CORNER, breaks_by_length
 from knotwork.spline import Spline
 
 #: the part of a tolerance that the rounding of numbers may use
@@ -73,7 +72,7 @@ def lighter(document: Document, tolerance: float, *, effort: str = "normal", cor
         for k, i in enumerate(alike):
             new = found.nets[found.at[k] : found.at[k + 1]]
             if len(new):
-                changed[i] = joined(new, _breaks(new, closed[k]), closed[k])
+                changed[i] = joined(new, breaks_by_length(new, (0.0, float(len(new))), closed[k]), closed[k])
                 counts[i] = len(new)
                 worst = max(worst, float(found.bound[k]) * scale)
     before = sum(len(net) for net in nets.values())
@@ -86,8 +85,3 @@ def _cubics(spline: Spline, index: int) -> Array:
     if spline.parameters != 1 or spline.dim != 2 or spline.rational or spline.space.degree > 3:
         raise ParameterError(f"spline {index} is a {str(spline)[1:-1]}; expected a plane curve of degree 1 to 3")
     return raised(np.asarray(to_bezier(spline)[0]), 3)
-
-
-def _breaks(nets: Array, closed: bool) -> Array:
-    polygon = np.sqrt((np.diff(nets, axis=1) ** 2).sum(axis=2)).sum(axis=1)
-    return increasing(polygon, closed)

@@ -157,7 +157,15 @@ def reduce(
     _require_one_of(distance=(distance, DISTANCES), form=(form, FORMS), effort=(effort, EFFORTS))
     _require_one_of(crossings=(crossings, CROSSINGS), small=(small, SMALL), method=(method, METHODS))
     if distance == "geometric":
-        return _reduced_shape(spline, tolerance, form=form, effort=effort, keep=keep, small=small, progress=progress)
+        from knotwork.removal.shapes.reducing import reduce_shape
+
+        def parametric(curve: Spline, allowed: Any) -> Reduction:
+            return reduce(curve, allowed, effort=effort, progress=progress)
+
+        return reduce_shape(
+            spline, tolerance, form=form, effort=effort, keep=keep, crossings=crossings, small=small,
+            parametric=parametric,
+        )  # fmt: skip
     if form != "spline":
         raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")
     if len(spline.spaces) != 1:
@@ -188,18 +196,6 @@ def _has_roads(original: Original) -> bool:
         return False
     given = original.tolerance.given
     return given.ndim == 0 or (original.spline.coefficients.dtype.kind != "c" and bool((given > 0).all()))
-
-
-def _reduced_shape(
-    spline: Spline, tolerance: Any, *, form: str, effort: str, keep: Any, small: str, progress: Progress | None
-) -> Reduction:
-    """Reduce the shape of a curve; the way there at equal parameters is that of `reduce`."""
-    from knotwork.removal.shapes.reducing import reduce_shape
-
-    def parametric(curve: Spline, allowed: Any) -> Reduction:
-        return reduce(curve, allowed, effort=effort, progress=progress)
-
-    return reduce_shape(spline, tolerance, form=form, effort=effort, keep=keep, small=small, parametric=parametric)
 
 
 def _require_one_of(**options: tuple[Any, tuple[Any, ...]]) -> None:

@@ -37,6 +37,7 @@ def reduce_shape(
     form: str,
     effort: str,
     keep: Any,
+    crossings: str,
     small: str,
     parametric: ParametricReduction,
 ) -> Reduction:
@@ -53,6 +54,8 @@ def reduce_shape(
     effort : {"fast", "normal", "best"}
     keep : str or sequence, optional
         "corners" and "lines", and parameters of joints that stay.
+    crossings : {"none-new", "allow"}
+        Whether cubic pieces may cross where the curve does not.
     small : {"keep", "drop"}
         What becomes of closed polylines within the tolerance of a point.
     parametric : callable
@@ -62,30 +65,33 @@ def reduce_shape(
     given = Tolerance(curve, tolerance).given
     allowed = given.astype(np.float64) if given.dtype == object else given
     rational = curve.rational
-    pieces, off = nets(curve, rational)
+    pieces, _ = nets(curve, rational)
     closed = curve.space.periodic or (is_closed(pieces, rational) and len(pieces) > 2)
     if form == "polyline":
-        return _polyline(curve, pieces, allowed, closed, effort, keep, small, off)
-    found = _bezier(curve, pieces, allowed, closed, effort, keep)
+        return _polyline(curve, pieces, allowed, closed, effort, keep, small)
+    found = _bezier(curve, pieces, allowed, closed, effort, keep, crossings)
     if form == "bezier":
         return found
     return _smooth(curve, pieces, allowed, closed, found, effort, parametric)
 
 
-def _bezier(curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any) -> Reduction:
+def _bezier(
+    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, crossings: str
+) -> Reduction:
     """Return cubic pieces that join."""
     rational = curve.rational
-    angle, joints = _features(curve, pieces, keep)
+    angle, lines, joints = _features(curve, pieces, keep)
     each = np.ndim(allowed) == 1
     found = reduce_bezier(
-        pieces, [0, len(pieces)], allowed, closed=closed, angle=angle, keep=joints, effort=effort, rational=rational
-    )
+        pieces, [0, len(pieces)], allowed, closed=closed, angle=angle, lines=lines, keep=joints, effort=effort,
+        crossings=crossings, rational=rational,
+    )  # fmt: skip
     floor = _lower_bound(pieces, allowed, closed, rational, 3)
     low = 3 * floor + (not closed)
     if not len(found.nets):
         return _itself(curve, effort, low, each)
     new = found.nets[..., :-1] / found.nets[..., -1:] if rational else found.nets
-    t = _breaks(new, curve.space.domain, closed)
+    t = breaks_by_length(new, curve.space.domain, closed)
     spline = joined(new, t, closed and curve.space.periodic)
     matching = Matching(found.s + found.start[0], found.u, closed)
     bound = float(found.bound[0]) if not each else found.bound[0] * np.asarray(allowed)
@@ -102,15 +108,15 @@ def _itself(curve: Spline, effort: str, low: int, each: bool) -> Reduction:
 
 
 def _polyline(
-    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, small: str, off: Array
+    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, small: str
 ) -> Reduction:
-    """Return straight edges: of a polyline, or of a curve that is flattened with a part of the tolerance first."""
+    """Return fewer straight edges of a polyline."""
     if curve.space.degree == 1 and not curve.rational:
         points = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
     else:
         raise ParameterError("form 'polyline' takes curves of degree 1; flatten others first")
     stay = np.zeros(len(points), bool)
-    _, joints = _features(curve, pieces, keep)
+    *_, joints = _features(curve, pieces, keep)
     stay[joints] = True
     found = reduce_polyline(points, allowed, closed=closed, keep=stay, small=small, effort=effort)
     low = _lower_bound(pieces, allowed, closed, False, 1) + (not closed)
@@ -118,7 +124,7 @@ def _polyline(
     edges = np.stack([vertices[:-1], vertices[1:]], axis=1)
     if len(vertices) < 2:
         raise ParameterError("the curve is within the tolerance of a point, and small='drop' leaves nothing of it")
-    spline = joined(edges, _breaks(edges, curve.space.domain, closed), closed and curve.space.periodic)
+    spline = joined(edges, breaks_by_length(edges, curve.space.domain, closed), closed and curve.space.periodic)
     matching = Matching(found.s, found.u, closed)
     return Reduction(spline, found.bound, "geometric", (), low, None, matching, effort)
 
@@ -174,12 +180,8 @@ def _at_even_pace(curve: Spline, pieces: Array, closed: bool, found: Reduction) 
             points[-1] = points[0]
         t = a + t * ((b - a) / t[-1])
         return joined(np.stack([points[:-1], points[1:]], axis=1), t, periodic), places
-    ends = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
-    lengths = np.sqrt((np.diff(ends, axis=0) ** 2).sum(axis=1))
-    polygon = np.sqrt((np.diff(pieces, axis=1) ** 2).sum(axis=2)).sum(axis=1)
-    going = polygon > 0
-    t = increasing((lengths / 2 + polygon / 2)[going], periodic)
-    t = a + t * ((b - a) / t[-1])
+    going = (pieces[:, 1:] != pieces[:, :1]).any(axis=(1, 2))
+    t = breaks_by_length(pieces[going], (a, b), periodic)
     return joined(pieces[going], t, periodic), np.append(np.flatnonzero(going).astype(float), float(len(pieces)))
 
 
@@ -194,16 +196,16 @@ def _lengths_along(spline: Spline, places: Array) -> Array:
     return lengths
 
 
-def _features(curve: Spline, pieces: Array, keep: Any) -> tuple[float | None, Array]:
-    """Return the angle above which joints are corners, and the pieces whose first points stay."""
+def _features(curve: Spline, pieces: Array, keep: Any) -> tuple[float | None, bool, Array]:
+    """Return the angle above which joints are corners, whether lines of a curve stay, and pieces that still begin."""
     angle: float | None = None
+    lines = False
     joints: list[Array] = []
     for each in [keep] if isinstance(keep, str) else list(keep if keep is not None else ()):
         if each == "corners":
             angle = CORNER
         elif each == "lines":
-            straight = _are_straight(pieces) if pieces.shape[1] > 2 else np.zeros(len(pieces), bool)
-            joints.append(np.flatnonzero(straight | np.roll(straight, 1)))
+            lines = pieces.shape[1] > 2  # of a polyline every edge is one
         elif isinstance(each, str):
             known = ", ".join(FEATURES)
             raise ParameterError(f"keep {each!r} given; for shapes expected {known}, or parameters of joints")
@@ -212,21 +214,10 @@ def _features(curve: Spline, pieces: Array, keep: Any) -> tuple[float | None, Ar
             if not len(at):
                 raise ParameterError(f"keep {each!r} given; expected a knot of the curve, where two pieces join")
             joints.append(at[at < len(pieces)])
-    return angle, np.unique(np.concatenate(joints)).astype(np.int64) if joints else np.zeros(0, np.int64)
+    return angle, lines, np.unique(np.concatenate(joints)).astype(np.int64) if joints else np.zeros(0, np.int64)
 
 
-def _are_straight(pieces: Array) -> Array:
-    """Tell which pieces have all their points on the line from end to end, to rounding."""
-    chord = pieces[:, -1:] - pieces[:, :1]
-    along = pieces - pieces[:, :1]
-    size = (chord**2).sum(axis=2, keepdims=True)
-    share = (along * chord).sum(axis=2, keepdims=True) / np.where(size > 0, size, 1)
-    off = np.abs(along - share * chord).max(axis=(1, 2))
-    straight: Array = (size[:, 0, 0] > 0) & (off <= 8 * np.finfo(float).eps * np.abs(pieces).max(axis=(1, 2)))
-    return straight
-
-
-def _breaks(new: Array, domain: Sequence[Any], closed: bool) -> Array:
+def breaks_by_length(new: Array, domain: Sequence[Any], closed: bool) -> Array:
     """Return breaks over a domain that follow the lengths of pieces."""
     a, b = (float(x) for x in domain)
     chord = np.sqrt(((new[:, -1] - new[:, 0]) ** 2).sum(axis=1))
