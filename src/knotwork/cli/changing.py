@@ -187,6 +187,7 @@ def _lighter(
 ) -> None:
     """Reduce a drawing in place, and say what became of it."""
     from knotwork.files.lighter import lighter
+    from knotwork.files.storage import replace
 
     if output:
         require_writable(output)
@@ -198,7 +199,7 @@ def _lighter(
     seconds = time.perf_counter() - start
     bound = found.bound + rounded
     if output:
-        found.document.write(output, even_if_longer=even_if_longer)
+        replace(output, data)
     sizes = (file.stat().st_size, len(data))
     if as_json:
         told = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed, "bound": bound}

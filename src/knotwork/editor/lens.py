@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
 from knotwork.editor.messages import Message
 from knotwork.editor.views import rounded
 from knotwork.errors import KnotworkError, ParameterError
 from knotwork.geometry.sampling import even_steps
 from knotwork.insertion import insert
 from knotwork.removal import reduce
+from knotwork.schemes import level
 from knotwork.sketch import Sketch
 from knotwork.spline import Spline
 from knotwork.stability import condition
@@ -35,16 +37,20 @@ def triangle(curve: Spline, message: Message) -> dict[str, Any]:
     u = message.number("u")
     t, P, first = _interval(curve, u)
     n = curve.space.degree
-    levels = [P]
-    for r in range(1, n + 1):
-        rows = []
-        for q in range(n + 1 - r):
-            a, b = t[r + q - 1], t[n + q]
-            w = (u - a) / (b - a)
-            rows.append((1 - w) * levels[-1][q] + w * levels[-1][q + 1])
-        levels.append(np.array(rows))
+    levels = _levels(t, P, u)
     arguments = [[_arguments(t, n, r, q, u) for q in range(n + 1 - r)] for r in range(n + 1)]
     return {"levels": [rounded(level) for level in levels], "arguments": arguments, "first": first, "u": u}
+
+
+def _levels(t: Array, P: Array, u: float) -> list[Array]:
+    """Return the levels of de Boor's triangle at u: from n + 1 points over 2n knots down to the point of the curve."""
+    n = len(P) - 1
+    levels = [P]
+    for r in range(n):
+        row = np.empty((n - r, P.shape[1]))
+        level(row, levels[-1], t[r:], t[n:], n - r, u, extent(P.shape[1]))
+        levels.append(row)
+    return levels
 
 
 def blossoms(curve: Spline, message: Message) -> dict[str, Any]:
@@ -60,14 +66,12 @@ def boehm(curve: Spline, message: Message) -> dict[str, Any]:
     after = insert(curve, u)
     t, P, first = _interval(curve, u)
     n = curve.space.degree
-    steps = []
-    for q in range(n):
-        a, b = t[q], t[n + q]
-        w = (u - a) / (b - a)
-        point = (1 - w) * P[q] + w * P[q + 1]
-        steps.append(
-            {"from": rounded(P[q]), "to": rounded(P[q + 1]), "share": round(float(w), 6), "point": rounded(point)}
-        )
+    new = _levels(t, P, u)[1]  # Boehm's new vertices are the first level of de Boor's triangle
+    shares = (u - t[:n]) / (t[n:] - t[:n])
+    steps = [
+        {"from": rounded(P[q]), "to": rounded(P[q + 1]), "share": round(float(shares[q]), 6), "point": rounded(new[q])}
+        for q in range(n)
+    ]
     return {"steps": steps, "points": rounded(after.points), "first": first, "u": u}
 
 

@@ -10,6 +10,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.geometry.sampling import even_steps
 from knotwork.removal import fit
 from knotwork.sketch.knot_replacement import with_change
+from knotwork.sketch.polygon import from_segments
 from knotwork.sketch.rules import Change
 from knotwork.spline import Spline
 
@@ -59,10 +60,7 @@ def _crossings(path: Array, points: Array) -> list[tuple[int, float, float]]:
 
 def _nearest(point: Array, points: Array) -> tuple[float, int, float]:
     """Return how near a polyline comes to a point, and the segment and share of its foot."""
-    e = np.diff(points, axis=0)
-    size = (e * e).sum(axis=1)
-    share = np.clip(((point - points[:-1]) * e).sum(axis=1) / np.where(size > 0, size, 1), 0, 1)
-    away = np.hypot(*(points[:-1] + share[:, None] * e - point).T)
+    away, share = from_segments(point, points[:-1], points[1:])
     i = int(np.argmin(away))
     return float(away[i]), i, float(share[i])
 

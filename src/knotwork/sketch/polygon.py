@@ -63,8 +63,7 @@ def side_of_shadow(point: Array, start: Array, end: Array) -> int:
 
 def distances(points: Array, line: Straight) -> Array:
     """Return how far points are from a stroke, shape (m,) for points of shape (m, 2)."""
-    share = np.clip((points - line.tail) @ line.direction / line.length**2, 0, 1)
-    away: Array = np.hypot(*(points - line.tail - np.outer(share, line.direction)).T)
+    away: Array = np.hypot(*(points - projected(points, line)).T)
     return away
 
 
@@ -75,6 +74,14 @@ def projected(points: Array, line: Straight) -> Array:
     return feet
 
 
+def from_segments(point: Array, A: Array, B: Array) -> tuple[Array, Array]:
+    """Return how far a point is from each segment from A[i] to B[i], and at which share of it the foot is."""
+    e = B - A
+    size = (e * e).sum(axis=1)
+    share = np.clip(((point - A) * e).sum(axis=1) / np.where(size > 0, size, 1), 0, 1)
+    return np.hypot(*(A + share[:, None] * e - point).T), share
+
+
 def distance(line: Straight, polygon: Array, closed: bool) -> tuple[float, int]:
     """Return how near a stroke comes to a polygon that it does not cross, and the nearest segment."""
     A, B = segments(polygon, closed)
@@ -82,10 +89,7 @@ def distance(line: Straight, polygon: Array, closed: bool) -> tuple[float, int]:
         return float(distances(polygon, line)[0]), 0
     each = np.minimum(distances(A, line), distances(B, line))
     for end in (line.tail, line.head):
-        e = B - A
-        size = np.where((e * e).sum(axis=1) > 0, (e * e).sum(axis=1), 1)
-        share = np.clip(((end - A) * e).sum(axis=1) / size, 0, 1)
-        each = np.minimum(each, np.hypot(*(A + share[:, None] * e - end).T))
+        each = np.minimum(each, from_segments(end, A, B)[0])
     nearest = int(np.argmin(each))
     return float(each[nearest]), nearest
 
