@@ -159,7 +159,7 @@ _PARTS = {
 
 if not TYPE_CHECKING:  # a type checker knows all names, and refuses others
 
-    def __getattr__(name):
+    def __getattr__(name: str) -> object:
         """Load the part that a name lives in, once."""
         for part, names in _PARTS.items():
             if name == part or name in names:
