@@ -134,9 +134,9 @@ def test_a_number_scales_and_the_arithmetic_is_kept():
 
 @given(kinds.curves(rational=None))
 def test_the_bounds_hold_every_point(curve):
-    lo, hi = curve.bounds
     u = [*curve.space.breaks, *between(curve.space)]
-    assert ((lo <= curve(u)) & (curve(u) <= hi)).all()
+    for lo, hi in (curve.bounds, curve.hull_bounds):
+        assert ((lo <= curve(u)) & (curve(u) <= hi)).all()
     assert (lo == curve.points.min(axis=0)).all()
 
 

@@ -172,7 +172,18 @@ class Spline(Frozen):
 
     @property
     def bounds(self) -> Array:
-        """A box that holds the spline, shape (2, d): the smallest and largest coordinate of the control points."""
+        """The box of the spline itself, shape (2, d): its smallest and largest coordinates, rounded outward.
+
+        Off by at most 4 units in the last place; of exact splines, by 2⁻⁵² of the coordinate. At a jump both sides
+        count. See `knotwork.geometry.boxes.box`.
+        """
+        from knotwork.geometry.boxes import box  # a room above: loaded when it is asked for
+
+        return box(self)
+
+    @property
+    def hull_bounds(self) -> Array:
+        """The box of the control points, shape (2, d): it holds the spline, and takes no work."""
         points = self.points.reshape(-1, self.dim)
         if points.dtype.kind == "c":
             raise PointError("complex points have no order, so no bounds")

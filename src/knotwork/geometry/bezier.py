@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
@@ -18,14 +20,30 @@ def raised(nets: Array, n: int) -> Array:
     return nets
 
 
-def halves(nets: Array) -> tuple[Array, Array]:
-    """Return the two halves of Bézier curves (de Casteljau)."""
+def halves(nets: Array, axis: int = 1) -> tuple[Array, Array]:
+    """Return the two halves of Bézier curves, or of surfaces across the parameter of an axis (de Casteljau)."""
+    nets = nets.swapaxes(1, axis)
     left, right = np.empty_like(nets), np.empty_like(nets)
     count = nets.shape[1]
     for k in range(count):
         left[:, k], right[:, count - 1 - k] = nets[:, 0], nets[:, -1]
         nets = nets[:, :-1] / 2 + nets[:, 1:] / 2
-    return left, right
+    return left.swapaxes(1, axis), right.swapaxes(1, axis)
+
+
+def restricted(net: Array, x: Any, y: Any, axis: int = 0) -> Array:
+    """Return a Bézier net over [x, y] in one parameter: point i is the blossom at n − i times x and i times y."""
+    c = net.swapaxes(0, axis)
+    n = len(c) - 1
+    result = np.empty_like(c)
+    for i in range(n + 1):
+        if i:
+            c = (1 - y) * c[:-1] + y * c[1:]
+        part = c
+        for _ in range(n - i):
+            part = (1 - x) * part[:-1] + x * part[1:]
+        result[i] = part[0]
+    return result.swapaxes(0, axis)
 
 
 def joined(nets: Array, t: Array, closed: bool) -> Spline:
