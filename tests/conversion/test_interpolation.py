@@ -101,3 +101,28 @@ def test_a_period_whose_values_do_not_determine_it():
     floats = kw.SplineSpace(2, range(7), periodic=True)
     with pytest.raises(kw.KnotError, match="no solution here"):
         solution(floats.basis(range(6)), y.astype(float))
+
+
+@pytest.mark.parametrize("degree", range(1, 8))
+@pytest.mark.parametrize("count", [3, 4, 5, 8, 9, 1000, 2001])
+def test_long_periods_of_uneven_points(degree, count):
+    """Points at random: chords differ by a factor of hundreds, and nothing may shrink to zero around the period."""
+    P = np.random.default_rng(count).standard_normal((count, 2))
+    c = kw.interpolate(P, degree=degree, periodic=True)
+    chords = np.linalg.norm(np.diff(np.concatenate([P, P[:1]]), axis=0), axis=1)
+    x = np.concatenate([[0], np.cumsum(chords / chords.max())])
+    x /= x[-1]
+    np.testing.assert_allclose(c(x[:-1]), P, atol=1e-10)
+    if degree % 2 and count > 2 * degree:
+        scipy = pytest.importorskip("scipy.interpolate")
+        wanted = scipy.make_interp_spline(x, np.concatenate([P, P[:1]]), degree, bc_type="periodic")
+        u = np.linspace(0, 1, 500)
+        np.testing.assert_allclose(c(u), wanted(u), atol=1e-10 * abs(c.points).max())
+
+
+@pytest.mark.parametrize("degree", range(1, 5))
+def test_a_period_in_fractions_whatever_its_length(degree):
+    for count in (3, 4, 2 * degree + 1, 13):
+        x = np.cumsum([F(1 + (7 * k) % 5, 3) for k in range(count + 1)])
+        y = np.array([F((11 * k) % 7) for k in range(count)])
+        assert kw.interpolate(y, x, degree, periodic=True)(x[:-1]).tolist() == y.tolist()

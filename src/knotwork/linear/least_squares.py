@@ -18,7 +18,7 @@ def rotate(w, x, p, k, R, D, z):
     band = len(x)
     for r in range(band):
         xk = x[r]
-        if w == 0 or xk == 0:
+        if w * xk * xk == 0:  # in floats, it may be too small for a number
             continue
         d = D[k + r] + w * xk * xk
         keep, mix = D[k + r] / d, w * xk / d
