@@ -70,9 +70,9 @@ def convert(
         The only parameter to convert.
     how : {"auto", "oslo", "interpolation", "least-squares"}
         ``"oslo"``: the generalised Oslo algorithm, the coefficients of the operator of de Boor and Fix; not for a lower
-        degree. ``"interpolation"``: at the extrema of the target's Chebyshev spline, part by part between
-        jumps; onto a period at its nodes. ``"least-squares"``: the
-        coefficients of the difference on the common refinement, times √(t[i+n+1] − t[i]), have the least squares.
+        degree. ``"interpolation"``: at the extrema of the target's Chebyshev spline, part by part between jumps; onto a
+        period without jumps at its nodes. ``"least-squares"``: the coefficients of the difference on the common
+        refinement, times √(t[i+n+1] − t[i]), have the least squares.
         ``"auto"``: Oslo where the target holds every spline of the space, where no row of the matrix sums to
         more than 16 in absolute value, or where exact arithmetic shows that nothing is lost; otherwise least squares.
 
@@ -228,19 +228,25 @@ def by_least_squares(spline: Spline, axis: int, target: SplineSpace, ends: str =
 
 def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
     """Interpolate at the extrema of the target's Chebyshev spline, on each part between jumps; of a period at nodes."""
-    space = spline.spaces[axis]
     if target.periodic:
         jumps = target.joints[0][target.joints[1] > target.degree]
         if target.degree and len(jumps):
-            raise KnotError(
-                f"splines of {target!r} may jump at {jumps[0]}: interpolation of a period takes continuous ones"
-            )
+            return _opened_at(spline, axis, target, jumps[0])
         A = design_matrix(target, target.nodes)
-        values = design_matrix(space, target.nodes).apply(spline.coefficients, axis)
+        values = design_matrix(spline.spaces[axis], target.nodes).apply(spline.coefficients, axis)
         return solved(spline, axis, target, values, lambda y: solution(A, y))
     parts = between_jumps(target)
     found = [_at_extrema(spline if len(parts) == 1 else trim(spline, *p.domain, axis), axis, p) for p in parts]
     return spline.with_axis(axis, target, np.concatenate([part.coefficients for part in found], axis))
+
+
+def _opened_at(spline: Spline, axis: int, target: SplineSpace, x: Any) -> Spline:
+    """Interpolate in a period that may jump at x as in a space with ends, from there once around."""
+    t, N, n = target.unrolled.knots, target.dimension, target.degree
+    first = int(np.searchsorted(t, x, "left"))
+    around = SplineSpace(n, t[first : first + N + n + 1])
+    found = _by_interpolation(trim(spline, *around.domain, axis), axis, around)
+    return spline.with_axis(axis, target, np.roll(found.coefficients, first - target.unrolled.zero, axis))
 
 
 def _at_extrema(spline: Spline, axis: int, target: SplineSpace) -> Spline:
