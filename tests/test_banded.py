@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -45,6 +47,34 @@ def test_numpy_and_scipy_take_it():
     assert np.linalg.matrix_rank(A) == 4
     with pytest.raises(ValueError, match="copied"):
         np.asarray(A, copy=False)
+
+
+def test_sparse_and_wide_ones_are_never_dense():
+    sparse = pytest.importorskip("scipy.sparse")
+    S = kw.SplineSpace.clamped(3, 100_000)
+    A = S.basis(np.linspace(0, 1, 100_001))
+    assert (A.tocsr().shape, A.tocsr().nnz <= 4 * 100_001) == ((100_001, 100_000), True)
+    assert isinstance(A @ sparse.eye_array(100_000), sparse.sparray)
+    x = np.random.default_rng(1).standard_normal(100_001)
+    np.testing.assert_allclose(x @ A, x @ A.tocsr(), atol=1e-12)
+    np.testing.assert_allclose((A.T @ A) @ x[1:], A.T @ (A @ x[1:]), atol=1e-12)
+
+
+@given(strategies.spaces(exact=True))
+def test_arrays_on_the_left(space):
+    A = space.basis(space.breaks)
+    rows = len(space.breaks)
+    one = np.arange(rows).astype(object)
+    for x in (one, np.stack([one, 1 - one]), [Fraction(1, 3)] * rows):
+        assert (x @ A == np.array(x, object) @ A.toarray()).all()
+    with pytest.raises(PointError, match=f"expected {rows} along the last axis"):
+        np.zeros(rows + 1) @ A
+
+
+def test_what_no_machine_holds_is_told_with_a_way_out():
+    A = kw.SplineSpace.clamped(1, 10**6).basis(np.linspace(0, 1, 10**6))
+    with pytest.raises(kw.SizeError, match=r"1e\+06 × 1e\+06 numbers .* tocsr\(\) and @ need no zeros"):
+        A.toarray()
 
 
 def test_a_product_that_does_not_fit():

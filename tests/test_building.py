@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 
 import numpy as np
@@ -74,6 +75,7 @@ def test_knots_of_opennurbs():
         (4, 3, [0, 0, 0, 1, 1, 1], False, r"OpenNURBS and Rhino; SplineSpace\.from_opennurbs\(3, knots\)"),
         (5, 3, [0, 0.5, 1], False, r"OpenCASCADE, .* SplineSpace\.from_breaks\(3, knots, multiplicities\)"),
         (5, 3, [0, 1, 2], True, r"from_breaks\(3, knots, multiplicities, periodic=True\)"),
+        (5, 2, range(-2, 8), True, r"wrapped, .* leave them out: knots\[2:-2\]$"),
         (7, 2, range(-2, 8), True, r"wrapped, .* knots\[2:-2\], points\[2:\]"),
         (8, 3, range(-2, 8), True, r"from_opennurbs\(3, knots, periodic=True\) takes them, with points\[3:\]"),
         (4, 3, [0, 0, 0, 0, 0, 0, 1, 1, 1], False, "9 knots given; 4 points of degree 3 take 8$"),
@@ -82,6 +84,64 @@ def test_knots_of_opennurbs():
 def test_knots_in_another_convention_are_named(points, degree, knots, periodic, says):
     with pytest.raises(kw.KnotError, match=says):
         kw.curve(np.zeros((points, 2)), degree, knots, periodic=periodic)
+
+
+def test_wrapped_points_and_knots_are_the_same_spline_without_them():
+    """As the message says it; all of them are what SciPy takes."""
+    scipy = pytest.importorskip("scipy.interpolate")
+    t, P = np.arange(-2.0, 8), strategies.control_points((7, 2), 3, float)
+    P[5:] = P[:2]
+    u = np.linspace(0, 5, 40)
+    np.testing.assert_allclose(kw.curve(P[2:], 2, t[2:-2], periodic=True)(u), scipy.BSpline(t, P, 2)(u), atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("degree", "knots", "periodic", "says"),
+    [
+        (3, [0, 0, 0, 1, 1, 1], False, r"at least 8: .* OpenNURBS and Rhino; SplineSpace\.from_opennurbs\(3, knots\)"),
+        (5, [0] * 5 + [1] * 6, False, "OpenNURBS"),
+        (3, [0, 0.5, 1], False, r"at least 8: distinct knots .*from_breaks\(3, knots, multiplicities\)"),
+        (1, [0, 1], False, "from_breaks"),
+        (3, [0, 0, 0, 0, 1, 1], False, "at least 8$"),
+        (3, [0], True, "at least 2$"),
+    ],
+)
+def test_too_few_knots_are_named_too(degree, knots, periodic, says):
+    with pytest.raises(kw.KnotError, match=says):
+        SplineSpace(degree, knots, periodic=periodic)
+
+
+SPLINES = "insert remove elevate lower convert clamp split trim to_bezier segment blossom close reduce join unify"
+
+
+@pytest.mark.parametrize("name", SPLINES.split())
+def test_points_given_for_a_spline_are_told(name):
+    needed = {"insert", "remove", "convert", "split", "trim", "reduce", "blossom"}
+    args = ([[0, 0], [1, 1], [2, 0]], 0.5) if name in needed else ([[0, 0], [1, 1], [2, 0]],)
+    says = "fit takes points" if name == "reduce" else "curve makes one|takes splines"
+    with pytest.raises(kw.ParameterError, match=rf"list.*{name}|{name}.*list") as told:
+        getattr(kw, name)(*args)
+    assert re.search(says, str(told.value))
+
+
+def test_knots_given_for_a_space_are_told():
+    t = [0, 0, 1, 1]
+    for call in (
+        lambda: kw.extraction(t),
+        lambda: kw.insertion_matrix(t, kw.SplineSpace(1, t)),
+        lambda: kw.insertion_matrix(kw.SplineSpace(1, t), t),
+        lambda: kw.stability.condition(t, 0.5),
+        lambda: kw.stability.extremal(t, 0.5),
+        lambda: kw.stability.kappa(t),
+        lambda: kw.stability.conversion_bound(t, t),
+    ):
+        with pytest.raises(kw.KnotError, match=r"list given; .* takes a SplineSpace"):
+            call()
+
+
+def test_a_path_and_splines_in_the_wrong_order():
+    with pytest.raises(kw.ParameterError, match=r"Spline given as the path; expected write\(path, splines\)"):
+        kw.write(kw.curve([0, 1, 2, 3]), "c.json")
 
 
 def test_the_nearest_knot_is_named():
@@ -97,7 +157,7 @@ def test_several_axes_in_one_call():
     assert kw.insert(s, {0: [F(1, 4), F(3, 4)], 1: F(1, 3)}) == both
     assert kw.insert(s, {-1: F(1, 3), 0: [F(1, 4), F(3, 4)]}, method="oslo") == both
     assert kw.insert(s, [[F(1, 4), F(3, 4)], [F(1, 3)]]) == both
-    assert kw.insert(s, (None, [F(1, 3)])) == kw.insert(s, F(1, 3), 1)
+    assert kw.insert(s, (None, [F(1, 3)])) == kw.insert(s, [None, F(1, 3)]) == kw.insert(s, F(1, 3), 1)
     assert kw.insert(s, (F(1, 4), F(3, 4))) == kw.insert(s, [F(1, 4), F(3, 4)], 0)  # numbers: knots of one axis
     raised = kw.elevate(kw.elevate(s, 2, 0), 1, 1)
     assert kw.elevate(s, {0: 2, 1: 1}) == kw.elevate(s, (2, 1)) == raised

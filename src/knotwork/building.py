@@ -1,4 +1,4 @@
-"""Splines from plain points: `curve`, `surface` and `volume`; and what is told of knots in other conventions."""
+"""Splines from plain points: `curve`, `surface` and `volume`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, numbers, require_finite
+from knotwork.conventions import convention
 from knotwork.errors import KnotError, ParameterError, PointError
-from knotwork.knots import distinct
 from knotwork.space import SplineSpace, checked_space, require_degree
 from knotwork.spline import Spline, require_positive
 
@@ -135,33 +135,8 @@ def _space(degree: Any, knots: Any, count: int, periodic: bool, what: str) -> Sp
     t = numbers(knots, "knots", KnotError)
     if t.ndim == 1 and len(t) != count + extra:
         told = f"{len(t)} knots given; {count} {what} of degree {degree} take {count + extra}"
-        raise KnotError(told + _convention(t, degree, count, periodic))
+        raise KnotError(told + convention(t, degree, count, periodic))
     return checked_space(degree, t, periodic)
-
-
-def _convention(t: Array, degree: int, count: int, periodic: bool) -> str:
-    """Return which other convention so many knots are likely in, and the call that takes it; or nothing."""
-    if periodic and len(t) == count + degree + 1:
-        return (
-            f": these are wrapped, the period continued by {degree} knots at each end, and the last {degree} points "
-            f"repeat the first; leave both out: knots[{degree}:-{degree}], points[{degree}:]"
-        )
-    if periodic and len(t) == count + degree - 1 and degree > 1:
-        return (
-            f": a wrapped period of OpenNURBS has as many; SplineSpace.from_opennurbs({degree}, knots, periodic=True) "
-            f"takes them, with points[{degree}:]"
-        )
-    if not periodic and len(t) == count + degree - 1:
-        return (
-            f": one fewer at each end is the convention of OpenNURBS and Rhino; SplineSpace.from_opennurbs({degree}, "
-            f"knots) takes them"
-        )
-    if len(distinct(np.sort(t))[0]) == len(t) and len(t) < count + degree + 1:
-        return (
-            f": distinct knots with multiplicities, as of OpenCASCADE, are taken by SplineSpace.from_breaks({degree}, "
-            f"knots, multiplicities{', periodic=True' if periodic else ''})"
-        )
-    return ""
 
 
 def _assembled(spaces: tuple[SplineSpace, ...], P: Array, weights: Any) -> Spline:

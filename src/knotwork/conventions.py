@@ -1,4 +1,7 @@
-"""Knot vectors in the conventions of others, as this house counts them: all knots, a period by its half-open knots."""
+"""Knot vectors in the conventions of others, as this house counts them: all knots, a period by its half-open knots.
+
+And what errors tell of knots whose number fits another convention.
+"""
 
 from __future__ import annotations
 
@@ -47,3 +50,46 @@ def without_first_and_last(degree: int, knots: Any, periodic: bool) -> Array:
     a, within, b = t[degree - 1 : degree], t[degree - 1 : len(t) - degree], t[-degree:][:1]
     inner = within[(within > a) & (within < b)]
     return np.concatenate([np.repeat(a, len(within) - len(inner)), inner, b])
+
+
+def convention(t: Array, degree: int, count: int, periodic: bool) -> str:
+    """Return which other convention so many knots are likely in, and the call that takes it; or nothing."""
+    if periodic and degree and len(t) in (count + degree + 1, count + 2 * degree + 1):
+        told = f": these are wrapped, the period continued by {degree} knots at each end"
+        if len(t) == count + 2 * degree + 1:
+            return f"{told}; leave them out: knots[{degree}:-{degree}]"
+        return (
+            f"{told}, and the last {degree} points repeat the first; leave both out: knots[{degree}:-{degree}], "
+            f"points[{degree}:]"
+        )
+    if periodic and len(t) == count + degree - 1 and degree > 1:
+        return (
+            f": a wrapped period of OpenNURBS has as many; SplineSpace.from_opennurbs({degree}, knots, periodic=True) "
+            f"takes them, with points[{degree}:]"
+        )
+    if not periodic and len(t) == count + degree - 1:
+        return _as_opennurbs(degree)
+    return _as_breaks(t, degree, periodic) if len(t) < count + degree + 1 else ""
+
+
+def convention_of_few(t: Array, degree: int, periodic: bool) -> str:
+    """Return the same for knots that are too few for any space of the degree."""
+    if not periodic and degree > 1 and len(t) >= 2 * degree and t[0] == t[degree - 1] and t[-1] == t[-degree]:
+        return _as_opennurbs(degree)
+    return _as_breaks(t, degree, periodic) if len(t) > 1 else ""
+
+
+def _as_opennurbs(degree: int) -> str:
+    return (
+        f": one fewer at each end is the convention of OpenNURBS and Rhino; SplineSpace.from_opennurbs({degree}, "
+        f"knots) takes them"
+    )
+
+
+def _as_breaks(t: Array, degree: int, periodic: bool) -> str:
+    if len(distinct(np.sort(t))[0]) < len(t):
+        return ""
+    return (
+        f": distinct knots with multiplicities, as of OpenCASCADE, are taken by SplineSpace.from_breaks({degree}, "
+        f"knots, multiplicities{', periodic=True' if periodic else ''})"
+    )

@@ -501,6 +501,12 @@ class SplineSpace(Frozen):
         return SplineSpace.trusted(self.degree, exact(self.knots, "knots", KnotError), self.periodic)
 
 
+def require_space(given: Any, what: str) -> None:
+    """Raise unless the function named `what` was given a space."""
+    if not isinstance(given, SplineSpace):
+        raise KnotError(f"{type(given).__name__} given; {what} takes a SplineSpace, such as the .space of a spline")
+
+
 def checked_space(degree: int, knots: Array, periodic: bool) -> SplineSpace:
     """Return the space over an array of knots; a short one that was checked before is not checked again."""
     if knots.size <= SHORT and knots.ndim == 1 and knots.dtype.char == "d":
@@ -524,7 +530,8 @@ def require_enough(knots: Array, degree: int, periodic: bool) -> None:
     least = 2 if periodic else 2 * degree + 2
     if len(knots) < least:
         kind = "a periodic space" if periodic else f"degree {degree}"
-        raise KnotError(f"{len(knots)} knots given; {kind} needs at least {least}")
+        told = f"{len(knots)} knots given; {kind} needs at least {least}"
+        raise KnotError(told + conventions.convention_of_few(knots, degree, periodic))
 
 
 def require_one_end(knots: Array, degree: int) -> None:

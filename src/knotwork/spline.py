@@ -529,6 +529,12 @@ def _plain(homogeneous: Array) -> Array:
     return homogeneous[..., :-1] / homogeneous[..., -1:]
 
 
+def require_spline(given: Any, what: str, other: str = "curve makes one of control points") -> None:
+    """Raise unless the function named `what` was given a spline; `other` tells who takes something else."""
+    if not isinstance(given, Spline):
+        raise ParameterError(f"{type(given).__name__} given; {what} takes a Spline, and {other}")
+
+
 def require_positive(weights: Array) -> None:
     """Raise unless all weights are positive."""
     bad = weights <= 0

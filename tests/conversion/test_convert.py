@@ -342,7 +342,6 @@ def test_what_is_refused():
     net = kw.surface(np.zeros((4, 4)))
     space = kw.SplineSpace.clamped(3, 6)
     closed = kw.SplineSpace.uniform(3, 6, periodic=True)
-    ring = kw.Spline(closed, np.arange(6))
     cases = [
         (f, "spline", {}, ParameterError, "expected a SplineSpace"),
         (f, [space, space], {}, ParameterError, "2 target spaces given for 1 parameters"),

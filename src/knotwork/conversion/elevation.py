@@ -22,7 +22,7 @@ from knotwork.insertion.merge import BLOCK, discrete_bsplines
 from knotwork.knots import distinct, merged, old_among, old_is_next
 from knotwork.linear.banded import Banded, along, as_blocks, combination
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 
 
 @kernel
@@ -124,6 +124,7 @@ def elevate(spline: Spline, times: int | Mapping[int, int] | Sequence[int | None
     >>> kw.elevate(kw.surface([[0, 1], [2, 3]], degree=1), (2, 1)).degree
     (3, 2)
     """
+    require_spline(spline, "elevate")
     wanted = spline.by_axis(times, axis)
     for each, count in wanted:
         more = whole(count, "times", 0, ParameterError)

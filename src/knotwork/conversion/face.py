@@ -22,7 +22,7 @@ from knotwork.linear.collocation import solution
 from knotwork.linear.elimination import solve
 from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 
 #: norms of conversion matrices up to this one are small: at most four bits are lost
 SMALL = 16
@@ -107,6 +107,7 @@ def convert(
     >>> found.spline.points.tolist(), found.exact, found.how
     ([0.0, 1.0, 3.0, 4.0], True, 'oslo')
     """
+    require_spline(spline, "convert")
     if isinstance(target, str) and target in BASES and axis is None:
         return Conversion(to_pieces(spline, target), 0 * abs(spline.coefficients.flat[0]), True, target)
     targets = _targets(spline, target, axis)

@@ -15,7 +15,7 @@ from knotwork.errors import ParameterError
 from knotwork.linear.banded import Banded
 from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 
 #: steps towards the best, each of which leaves about a tenth of the gap
 STEPS = 60
@@ -78,6 +78,7 @@ def lower(
     >>> kw.lower(cubic, ends="keep").spline.points.round(9).tolist()
     [1.0, -1.0, 9.0]
     """
+    require_spline(spline, "lower")
     axis = spline.axis(axis)
     times = whole(times, "times", 0, ParameterError)
     space = spline.spaces[axis]

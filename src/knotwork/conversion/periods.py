@@ -13,7 +13,7 @@ from knotwork.evaluation import parameters
 from knotwork.insertion.face import insert
 from knotwork.insertion.pieces import clamp
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 from knotwork.unrolled import moved
 
 
@@ -48,6 +48,7 @@ def close(spline: Spline, axis: int = 0, tolerance: Any = 0) -> Conversion[Splin
     >>> kw.close(kw.clamp(ring)).spline.space == ring.space
     True
     """
+    require_spline(spline, "close")
     axis = spline.axis(axis)
     space = spline.spaces[axis]
     if space.periodic:

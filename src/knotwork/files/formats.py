@@ -138,6 +138,8 @@ def write(
     FileError
         If the format cannot hold these splines, or the file cannot be written.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise ParameterError(f"{type(path).__name__} given as the path; expected write(path, splines)")
     path = Path(path)
     codec = codec_of(path)
     splines = [splines] if isinstance(splines, Spline) else list(splines)

@@ -13,7 +13,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, empty
 from knotwork.insertion.merge import rows_of_matrix
 from knotwork.knots import distinct
-from knotwork.space import SplineSpace
+from knotwork.space import SplineSpace, require_space
 from knotwork.spline import Spline
 
 
@@ -65,6 +65,7 @@ def extraction(space: SplineSpace | Spline) -> Extraction | tuple[Extraction, ..
     """
     if isinstance(space, Spline):
         return tuple(map(extraction, space.spaces))
+    require_space(space, "extraction")
     n, (a, b) = space.degree, space.domain
     t, numbers = space.unrolled.opened(np.arange(space.dimension)[None, :, None])
     values, counts = distinct(t[np.searchsorted(t, a, "left") : np.searchsorted(t, b, "right")])

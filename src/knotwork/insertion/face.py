@@ -10,8 +10,8 @@ import numpy as np
 from knotwork.insertion.auto import takes_boehm
 from knotwork.insertion.refinement import insert_one, matrix_to, missing_knots, refine
 from knotwork.linear.banded import Banded
-from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.space import SplineSpace, require_space
+from knotwork.spline import Spline, require_spline
 
 if TYPE_CHECKING:
     from knotwork.insertion.methods.catalogue import Method
@@ -54,6 +54,7 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: MethodName = "auto
     >>> kw.insert(net, {0: 0.5, 1: [0.25, 0.75]})
     <surface of 3 × 4 numbers, degree 1 × 1>
     """
+    require_spline(spline, "insert")
     if isinstance(knots, Mapping) or _by_axis(knots, len(spline.spaces)):
         for each, new in spline.by_axis(knots, axis):
             spline = insert(spline, new, each, method)
@@ -96,15 +97,17 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: MethodNam
     ParameterError
         If there is no such method.
     """
+    for each in (space, refined):
+        require_space(each, "insertion_matrix")
     if method != "auto":
         return _method(method).matrix(space, refined)
     return matrix_to(space, refined, missing_knots(space, refined))
 
 
 def _by_axis(knots: Any, k: int) -> bool:
-    """Tell whether these are knots for each of several parameters: a list or None for each, not a list of numbers."""
+    """Tell whether these are knots for each of several parameters: a list each, or None for some."""
     several = k > 1 and isinstance(knots, list | tuple) and len(knots) == k
-    return several and all(x is None or isinstance(x, list | tuple | np.ndarray) for x in knots)
+    return several and (any(x is None for x in knots) or all(isinstance(x, list | tuple | np.ndarray) for x in knots))
 
 
 def _method(name: str) -> Method:

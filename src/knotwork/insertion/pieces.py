@@ -13,7 +13,7 @@ from knotwork.insertion.merge import refined
 from knotwork.knots import distinct, multiplicities, sorted_knots
 from knotwork.linear.banded import along, as_blocks
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 
 
 def clamp(spline: Spline) -> Spline:
@@ -21,6 +21,7 @@ def clamp(spline: Spline) -> Spline:
 
     Control points at the ends are then points of the spline, and knots outside the domain are gone.
     """
+    require_spline(spline, "clamp")
     for axis, space in enumerate(spline.spaces):
         spline = _restrict(spline, axis, *space.domain)
     return spline
@@ -37,6 +38,7 @@ def split(spline: Spline, u: Any, axis: int = 0) -> tuple[Spline, Spline]:
     ParameterError
         If u is not strictly inside the domain.
     """
+    require_spline(spline, "split")
     axis = spline.axis(axis)
     space = spline.spaces[axis]
     a, b = space.domain
@@ -79,6 +81,7 @@ def trim(spline: Spline, a: Any, b: Any = None, axis: int = 0) -> Spline:
     >>> kw.trim(net, {0: (0, 0.5), 1: (0.5, 1)}).points.tolist()
     [[2.0, 4.0], [4.0, 6.0]]
     """
+    require_spline(spline, "trim")
     if b is None:
         parts = spline.by_axis(a, axis)
         if not all(isinstance(part, list | tuple) and len(part) == 2 for _, part in parts):
@@ -140,6 +143,7 @@ def to_bezier(spline: Spline) -> tuple[Array, Any]:
     >>> nets.tolist(), breaks.tolist()
     ([[0.0, 1.0, 2.0], [2.0, 3.0, 4.0]], [0.0, 1.0, 2.0])
     """
+    require_spline(spline, "to_bezier")
     k = len(spline.spaces)
     nets, breaks = spline.coefficients, []
     for axis, space in enumerate(spline.spaces):

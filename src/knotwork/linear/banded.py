@@ -9,7 +9,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, numbers
 from knotwork.arithmetic.kernel import extent, kernel
-from knotwork.errors import PointError
+from knotwork.errors import PointError, SizeError
 from knotwork.value import Frozen
 
 _set = object.__setattr__
@@ -161,10 +161,23 @@ class Banded(Frozen):
             if len(other.first) != self.columns:
                 raise PointError(f"right operand of shape {other.shape}: expected {self.columns} rows")
             return _product(self, other)
+        if hasattr(other, "tocsr"):  # of scipy.sparse
+            product: Array = self.tocsr() @ other
+            return product
         array = numbers(other, "right operand", PointError)
         if array.ndim == 0 or len(array) != self.columns:
             raise PointError(f"right operand of shape {array.shape}: expected {self.columns} along the first axis")
         return self.apply(array, 0)
+
+    #: above that of NumPy's arrays, so that array @ Banded comes here and makes no dense matrix
+    __array_priority__ = 10.5
+
+    def __rmatmul__(self, other: Any) -> Array:
+        """Return the product of an array, whose last axis has one element a row, with the matrix."""
+        array = numbers(other, "left operand", PointError)
+        if array.ndim not in (1, 2) or array.shape[-1] != len(self.first):
+            raise PointError(f"left operand of shape {array.shape}: expected {len(self.first)} along the last axis")
+        return self.T.apply(np.ascontiguousarray(array.T), 0).T
 
     @property
     def T(self) -> Banded:
@@ -204,7 +217,10 @@ class Banded(Frozen):
 
     def toarray(self) -> Array:
         """Return the matrix with its zeros, shape (rows, columns)."""
-        dense = empty(self.shape, self.entries.dtype)
+        try:
+            dense = empty(self.shape, self.entries.dtype)
+        except SizeError as exc:
+            raise SizeError(f"{exc}; tocsr() and @ need no zeros") from None
         dense[...] = 0 * self.entries.flat[0] if self.entries.size else 0
         row, column, x = self._places()
         np.add.at(dense, (row, column), x)

@@ -14,7 +14,7 @@ from knotwork.progressive.homogeneous import pairs, written
 from knotwork.progressive.procedures import blossoms
 from knotwork.progressive.sequence import Sequence
 from knotwork.space import SplineSpace
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 
 
 def segment(spline: Spline, interval: Any = 0) -> Curve:
@@ -39,6 +39,7 @@ def segment(spline: Spline, interval: Any = 0) -> Curve:
     >>> kw.segment(c, 1)
     Curve(Sequence([0, 1, 2, 2]), [0.0, 0.0, 1.0])
     """
+    require_spline(spline, "segment")
     space = spline.space
     t, index = _local(space, _piece(space, interval))
     return Curve(Sequence(t), spline.coefficients[index])
@@ -70,6 +71,7 @@ def blossom(spline: Spline, args: Any, interval: Any = None) -> Any:
     >>> float(kw.blossom(c, [0, 1])), float(kw.blossom(c, [0.5, 1]))
     (4.0, 5.0)
     """
+    require_spline(spline, "blossom")
     k = len(spline.spaces)
     given = [args] if k == 1 else _one_each(args, k, "sequences of arguments")
     where = [interval] if k == 1 else [None] * k if interval is None else _one_each(interval, k, "intervals")

@@ -17,7 +17,7 @@ from knotwork.removal.problem import Original
 from knotwork.removal.result import Progress, Reduction
 from knotwork.removal.roads import reduced
 from knotwork.removal.surfaces import without_lines
-from knotwork.spline import Spline
+from knotwork.spline import Spline, require_spline
 
 DISTANCES = ("parametric", "geometric")
 FORMS = ("spline", "bezier", "polyline")
@@ -67,6 +67,7 @@ def remove(spline: Spline, knots: Any, axis: int = 0, tolerance: Any = 0.0) -> R
     >>> kw.remove(kw.insert(c, [0.25, 0.5]), [0.25, 0.5]).spline.space == c.space
     True
     """
+    require_spline(spline, "remove")
     axis = spline.axis(axis)
     space = spline.spaces[axis]
     kept = space.without_knots(knots).knots
@@ -152,8 +153,7 @@ def reduce(
     >>> small.spline.space.dimension < 20, small.bound <= 1e-3
     (True, True)
     """
-    if not isinstance(spline, Spline):
-        raise ParameterError(f"{type(spline).__name__} given; reduce takes a Spline, and fit takes points")
+    require_spline(spline, "reduce", "fit takes points")
     _require_one_of(distance=(distance, DISTANCES), form=(form, FORMS), effort=(effort, EFFORTS))
     _require_one_of(crossings=(crossings, CROSSINGS), small=(small, SMALL), method=(method, METHODS))
     if distance == "geometric":

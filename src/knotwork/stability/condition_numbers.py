@@ -28,7 +28,7 @@ from knotwork.errors import KnotError
 from knotwork.insertion import insertion_matrix
 from knotwork.linear.banded import Banded
 from knotwork.linear.elimination import solve
-from knotwork.space import SplineSpace
+from knotwork.space import SplineSpace, require_space
 from knotwork.spline import Spline
 
 
@@ -89,6 +89,7 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
     >>> f.coefficients.tolist(), kw.insert(f, 0.5).coefficients.tolist()
     ([1.0, -3.0, 1.0], [1.0, -1.0, -1.0, 1.0])
     """
+    require_space(space, "condition")
     if isinstance(refined, SplineSpace) and space.periodic:
         raise KnotError(
             f"{space!r} is periodic: refined coefficients of the extremal spline alternate in sign, and an odd number "

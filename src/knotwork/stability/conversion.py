@@ -11,7 +11,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.conversion.oslo import conversion_matrix, least_pieces
 from knotwork.knots import multiplicities
-from knotwork.space import SplineSpace
+from knotwork.space import SplineSpace, require_space
 from knotwork.stability.worst_cases import basis_condition
 
 
@@ -67,6 +67,8 @@ def conversion_bound(space: SplineSpace, target: SplineSpace) -> ConversionBound
     >>> bound.beta.tolist(), bound.lower, float(bound.norm), bound.upper
     ([1.0, 7.0, 1.0], 7.0, 15.0, 84.0)
     """
+    for each in (space, target):
+        require_space(each, "conversion_bound")
     pieces = least_pieces(space, target)
     A = conversion_matrix(space, target, pieces)
     k = space.order

@@ -11,7 +11,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import real_numbers, whole
 from knotwork.conversion.chebyshev import between_jumps, chebyshev
 from knotwork.errors import KnotError, ParameterError
-from knotwork.space import SplineSpace
+from knotwork.space import SplineSpace, require_space
 from knotwork.stability.condition_numbers import condition
 
 
@@ -121,6 +121,7 @@ def kappa(space: SplineSpace) -> float:
     >>> round(kw.stability.kappa(kw.SplineSpace.bezier(3, [0, 1])), 12)
     5.0
     """
+    require_space(space, "kappa")
     return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in between_jumps(space))
 
 
