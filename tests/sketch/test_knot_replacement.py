@@ -4,11 +4,12 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import knotwork as kw
-from knotwork.sketch import Sketch, balanced, delete_vertex, stroke
+from knotwork.sketch import Sketch, append_vertex, balanced, delete_vertex, stroke
 from knotwork.sketch.knot_replacement import with_change
 from knotwork.sketch.rules import Change
 
@@ -166,3 +167,28 @@ def test_a_stretched_region_gets_as_much_parameter_per_length_as_the_rest():
     assert longer > 0.5
     end = np.linspace(3.2, 4.2, 20)
     assert np.allclose(even(np.minimum(end + longer, even.space.domain[1])), crowded(end), atol=1e-12)
+
+
+@given(changes(), st.booleans(), st.sampled_from(["even", "chord"]))
+def test_a_curve_that_goes_on_at_an_end_keeps_its_knots_and_its_course(case, at_start, spacing):
+    curve = case[0]
+    n, t, count = curve.space.degree, curve.space.knots, len(curve.points)
+    if curve.space.periodic:
+        return
+    first, last = (-1, 0) if at_start else (count - 1, count)
+    after = with_change(curve, Change("extend", first, last, np.array([[0.5, 0.25]]), ""), spacing)
+    kept = after.space.knots[n + 1 :] if at_start else after.space.knots[: -n - 1]
+    assert kept.tolist() == (t[n:] if at_start else t[: len(t) - n]).tolist()
+    low, high = (t[2 * n], t[-1]) if at_start else (t[0], t[-1 - 2 * n])
+    u = np.linspace(low, high, 40)[1:-1] if low < high else np.zeros(0)
+    assert (after(u) == curve(u)).all()
+    back = delete_vertex(Sketch([after]), 0, 0 if at_start else count)
+    assert back.curves[0] == curve
+
+
+def test_a_curve_goes_on_for_long():
+    """A thousand vertices put at the end of a curve that no stroke began: its last interval does not shrink."""
+    sketch = Sketch([kw.curve(POINTS, 3, KNOTS)])
+    for i in range(1000):
+        sketch = append_vertex(sketch, 0, [17 + i, i % 2])
+    assert sketch.curves[0].space.domain[1] == pytest.approx(1 + 1000 * 0.1)

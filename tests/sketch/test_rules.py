@@ -96,6 +96,14 @@ def test_a_stroke_from_beyond_an_end_continues_the_curve():
     assert polygon(before) == [[-1, 3], *POLYGON.tolist()]
 
 
+@pytest.mark.parametrize(("path", "end"), [([[10.2, 0], [13, 0]], -1), ([[-0.3, 0.05], [-3, 0]], 0)])
+def test_a_stroke_just_beyond_an_end_and_along_it_continues_the_curve(path, end):
+    result = stroke(drawing(), path)
+    assert result.case == "extend"
+    assert np.delete(polygon(result), end, axis=0).tolist() == POLYGON.tolist()
+    assert polygon(result)[end] == path[1]
+
+
 def test_a_stroke_acts_on_the_curve_that_it_crosses_first():
     two = Sketch([kw.curve(POLYGON), kw.curve(POLYGON - np.array([0, 5]))])
     result = stroke(two, [[8, -6], [8.5, -4]])

@@ -4,6 +4,9 @@ A stroke changes the vertices strictly between two that stay. The knots strictly
 these two give way to as many as the new polygon needs; all others stay. So the curve stays as it was, to the last bit,
 wherever neither its knots nor its control points were touched, and deleting a vertex that was inserted brings back the
 knots that were there before.
+
+Where a polygon goes on at an end, the curve does so too: all its knots stay, and intervals as long as the last one join
+them. A vertex deleted at an end takes the last interval with it.
 """
 
 from __future__ import annotations
@@ -70,13 +73,18 @@ def with_change(curve: Spline, change: Change, spacing: str | Array = "even") ->
     Returns
     -------
     Spline
-        Of the same degree and domain. If there are too few vertices for the degree, a clamped curve of the highest
+        Of the same degree; and of the same domain, except that a curve which goes on at an end, or which loses that
+        end, has a longer or a shorter one. If there are too few vertices for the degree, a clamped curve of the highest
         degree that they admit. A period that begins strictly inside the changed knots begins after them instead.
     """
     space = curve.space
     polygon = changed(curve.points, space.periodic, change)
     if not space.periodic and len(polygon) <= space.degree:
         return clamped(polygon, len(polygon) - 1, space.domain)
+    if change.case in ("extend", "delete") and not space.periodic:
+        knots = _gone_on(curve, polygon, change, spacing)
+        if knots is not None:
+            return Spline(SplineSpace(space.degree, knots), polygon)
     if space.periodic and len(polygon) < 2:
         raise ParameterError("a closed curve needs two control points or more")
     low, high, count = _interval(space, change, len(polygon) - len(curve.points))
@@ -90,6 +98,33 @@ def with_change(curve: Spline, change: Change, spacing: str | Array = "even") ->
     new = knots[low] + (knots[high] - knots[low]) * _shares(spacing, count, change, curve.points, space.periodic)
     knots = np.concatenate([knots[: low + 1], new, knots[high:]])
     return Spline(SplineSpace(space.degree, knots, periodic=space.periodic), polygon)
+
+
+def _gone_on(curve: Spline, polygon: Array, change: Change, spacing: str | Array) -> Array | None:
+    """Return the knots of a curve that goes on at an end, or that loses the vertex there.
+
+    None if neither end changes, if the curve is not clamped there, or if the knot that would be the new end is multiple.
+    """
+    t, n, P = curve.space.knots, curve.space.degree, curve.points
+    if change.last < len(P):  # at the start: the same, backwards
+        if change.first >= 0:
+            return None
+        mirrored = Change(change.case, len(P) - 1 - change.last, len(P), change.vertices[::-1], "")
+        back = Spline(SplineSpace(n, -t[::-1]), P[::-1])
+        knots = _gone_on(back, polygon[::-1], mirrored, spacing)
+        return None if knots is None else -knots[::-1]
+    more, inner, end = len(polygon) - len(P), t[: -n - 1], t[-1]
+    if t[-n - 1] != end:
+        return None
+    if more <= 0:
+        inner, end = inner[: len(inner) + more], t[len(inner) + more]
+        return np.append(inner, np.full(n + 1, end)) if inner[-1] < end else None
+    step, pace = end - inner[-1], 1.0
+    if isinstance(spacing, str) and spacing == "chord":
+        last, new = np.hypot(*(P[-1] - P[-2])), np.hypot(*(polygon[-1] - polygon[-2]))
+        pace = float(new / last) if new and last else 1.0
+    ends = end + pace * step * np.arange(more + 1)
+    return np.concatenate([inner, ends, np.full(n, ends[-1])])
 
 
 def _seam(low: int, high: int, period: int) -> int:

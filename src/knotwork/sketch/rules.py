@@ -119,6 +119,18 @@ def near(line: Straight, polygon: Array, closed: bool, reach: float, weight: flo
     return Change("near", first - 1, last + 1, vertices, reason)
 
 
+def leads_away(line: Straight, polygon: Array, reach: float) -> bool:
+    """Tell whether a stroke begins just beyond an end of an open polygon, and goes away from there."""
+    if len(polygon) < 2:
+        return True
+    return any(
+        np.hypot(*(line.tail - end)) <= reach
+        and side_of_shadow(line.tail, inner, end) > 0
+        and line.direction @ (end - inner) > 0
+        for inner, end in ((polygon[1], polygon[0]), (polygon[-2], polygon[-1]))
+    )
+
+
 def runs_beside(line: Straight, polygon: Array, closed: bool, segment: int) -> bool:
     """Tell whether a stroke near a segment, or near one of its neighbours, is relatively parallel to it (§7.2)."""
     A, B = segments(polygon, closed)

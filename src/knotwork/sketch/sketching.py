@@ -226,6 +226,7 @@ def _stroke_beside(sketch: Sketch, line: Straight, weight: float, reach: float, 
         curve = sketch.curves[index]
         closed = curve.space.periodic
         beside = rules.runs_beside(line, curve.points, closed, segment)
+        beside = beside and (closed or not rules.leads_away(line, curve.points, reach))
         change = rules.near(line, curve.points, closed, reach, weight) if beside else None
         if change is None:
             longer = Straight(line.tail - reach / line.length * line.direction, line.head)

@@ -32,10 +32,7 @@ def append_vertex(sketch: Sketch, curve: int, point: Any) -> Sketch:
     if spline.space.periodic:
         raise ParameterError(f"curve {curve} is closed: it has no end to go on from")
     count = len(spline.points)
-    if curve in sketch.begun:
-        change = Change("extend", count - 1, count, P[None], "")
-        return sketch.with_curve(curve, with_polygon_change(sketch, curve, change))
-    change = Change("extend", count - 2, count, np.stack([spline.points[-1], P]), "")
+    change = Change("extend", count - 1, count, P[None], "")
     return sketch.with_curve(curve, with_polygon_change(sketch, curve, change))
 
 
