@@ -241,3 +241,90 @@ def test_two_tabs_show_the_same(sheet, served):
         sheet.draw((300, 500), (450, 300))
     assert other.curves == sheet.curves
     other.page.close()
+
+
+def test_a_curve_drawn_by_hand_has_few_points_and_can_be_read_as_a_line(sheet):
+    turn = np.linspace(0, np.pi, 120)
+    with sheet.change():
+        sheet.page.mouse.move(300, 400)
+        sheet.page.mouse.down()
+        for a in turn[1:]:
+            sheet.page.mouse.move(float(450 - 150 * np.cos(a)), float(400 - 150 * np.sin(a)))
+        sheet.page.mouse.up()
+    assert sheet.page.inner_text("#rule") == "Freehand"
+    (curve,) = sheet.curves
+    assert len(curve["points"]) < 12
+    scale = sheet.page.evaluate("app.camera.scale")
+    drawn = kw.Spline(kw.SplineSpace(curve["degree"], curve["knots"]), curve["points"])
+    middle = sheet.page.evaluate("app.camera.toPlane(450 - app.sheet.getBoundingClientRect().left, 400)")
+    away = np.hypot(*(drawn(np.linspace(*drawn.space.domain, 60)) - middle).T) * scale
+    assert np.abs(away - 150).max() < 5
+    with sheet.change():
+        sheet.page.click("#reading [data-reading=straight]")
+    assert len(sheet.curves[0]["points"]) == 2
+
+
+def test_the_pressure_of_a_pen_weighs_a_stroke_and_a_palm_beside_it_draws_nothing(browser, served, tmp_path):
+    """A stroke of half the pressure beside the polygon pulls its vertices half of the way (§7.3.2)."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=True)
+    sheet = Sheet(context.new_page(), served.url)
+    sheet.begin()
+    sheet.bring(kw.curve([[0, 0], [2, 0], [4, 0], [5, 3], [6, 0], [10, 0]], 3), tmp_path)
+    scale = sheet.page.evaluate("app.camera.scale")
+    above = 10 / scale
+    tool = context.new_cdp_session(sheet.page)
+
+    def pen(kind, point, force):
+        x, y = sheet.at(point)
+        tool.send(
+            "Input.dispatchMouseEvent",
+            {
+                "type": kind,
+                "x": x,
+                "y": y,
+                "pointerType": "pen",
+                "force": force,
+                "button": "left",
+                "buttons": 1,
+                "clickCount": 1,
+            },
+        )
+
+    with sheet.change():
+        pen("mousePressed", [0.9, above], 0.5)
+        for x in np.linspace(1, 3, 9):
+            pen("mouseMoved", [x, above], 0.5)
+        x, y = sheet.at([3, 0])
+        palm = [{"x": x, "y": y + 200, "id": 7}]
+        for kind, fingers in (("Start", palm), ("End", [])):
+            tool.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": fingers})
+        pen("mouseReleased", [3, above], 0.5)
+    assert sheet.page.inner_text("#rule") == "Near"
+    (curve,) = sheet.curves
+    heights = np.array(curve["points"])[:, 1]
+    assert np.isclose(heights[heights > 0].min(), above / 2, rtol=0.05)
+    assert sheet.errors == []
+    context.close()
+
+
+def test_the_page_goes_on_when_the_editor_was_killed_and_started_again(browser, tmp_path):
+    store = tmp_path / "drawings.sqlite3"
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    with editor(store) as first:
+        sheet = Sheet(context.new_page(), first.url)
+        sheet.begin()
+        with sheet.change():
+            sheet.draw((300, 500), (450, 300))
+        drawn = sheet.curves
+        first.kill()
+    sheet.until("document.querySelector('#line').textContent !== ''")
+    sheet.draw((405, 330), (620, 280))  # drawn while nobody listens: said again when the line is back
+    with editor(store) as second:
+        assert second.url == first.url
+        sheet.until("app.drawing.curves[0].points.length === 3", seconds=20)
+        assert sheet.curves[0]["points"][0] == drawn[0]["points"][0]
+        sheet.page.reload()
+        sheet.ready()
+        assert len(sheet.curves[0]["points"]) == 3
+    assert sheet.errors == []
+    context.close()

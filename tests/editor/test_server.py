@@ -1,6 +1,7 @@
 """The server: it lets nobody else in, says what is wrong with a message, and goes on."""
 
 import json
+import os
 import urllib.error
 import urllib.request
 from contextlib import ExitStack
@@ -234,6 +235,22 @@ def test_undo_and_redo_that_are_said_again_are_done_once(served):
         assert "changed elsewhere" in page.ask(**undo)["error"]
         assert page.ask(open=page.document)["revision"] == 2
         assert page.ask(do="redo", **{"based on": 2})["revision"] == 3
+
+
+def test_the_address_is_that_of_the_last_time_and_only_its_owner_reads_it(tmp_path):
+    store = tmp_path / "drawings.sqlite3"
+    with editor(store) as first:
+        pass
+    with editor(store) as second:
+        assert second.url == first.url
+        with editor(store) as beside:
+            assert beside.port != second.port
+    kept = store.with_name("drawings.sqlite3.address")
+    if os.name == "posix":
+        assert kept.stat().st_mode & 0o777 == 0o600
+    kept.write_text("[1, ")
+    with editor(store) as third:
+        assert third.token != first.token
 
 
 def test_what_was_acknowledged_is_there_after_kill_9(tmp_path):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
 import secrets
 import socket
@@ -42,7 +44,7 @@ def edit(
     store : Path, optional
         The SQLite file of the drawings; by default in the user's directory for data.
     port : int
-        0 takes a free one.
+        0 takes the one of the last time, or else a free one.
     browse : bool
         Whether to open a browser.
     announce : callable
@@ -71,17 +73,16 @@ def edit(
 
     if not 0 <= port <= 65535:
         raise ParameterError(f"port {port} given; expected 0 to 65535")
-    drawings = Store(store or data_directory() / "drawings.sqlite3")
+    store = store or data_directory() / "drawings.sqlite3"
+    drawings = Store(store)
     first = None
     if file is not None:
         curves, _ = exchange.brought(fetch(file), file.suffix.lower())
         first = drawings.create(file.stem, Sketch(tuple(curves)))
-    with socket.socket() as listener:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind(("127.0.0.1", port))
-        listener.listen(100)  # who follows the address at once waits, and is not turned away
+    kept, token = _last_address(store)
+    with _listening(port or kept, otherwise=port) as listener:
         number = listener.getsockname()[1]
-        token = secrets.token_urlsafe(24)
+        _keep_address(store, number, token)
         hosts = frozenset({f"127.0.0.1:{number}", f"localhost:{number}"})
         address = f"http://127.0.0.1:{number}/?token={token}"
         announce(address)
@@ -90,3 +91,45 @@ def edit(
         app = application(drawings, token, hosts, first)
         config = uvicorn.Config(app, log_level="warning", ws_max_size=MESSAGE + 1000, server_header=False)
         uvicorn.Server(config).run(sockets=[listener])
+
+
+def _last_address(store: Path) -> tuple[int, str]:
+    """Return the port and the token of the last time, for pages that are still open; or else 0 and a new token.
+
+    They lie in a file beside the drawings that only its owner can read.
+    """
+    try:
+        port, token = json.loads(_address_file(store).read_text())
+    except (OSError, ValueError):
+        return 0, secrets.token_urlsafe(24)
+    known = isinstance(port, int) and 0 < port <= 65535 and isinstance(token, str) and len(token) >= 32
+    return (port, token) if known else (0, secrets.token_urlsafe(24))
+
+
+def _keep_address(store: Path, port: int, token: str) -> None:
+    target = _address_file(store)
+    part = target.with_name(f"{target.name}.{os.getpid()}")
+    with open(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
+        json.dump([port, token], file)
+    os.replace(part, target)
+
+
+def _address_file(store: Path) -> Path:
+    return store.with_name(store.name + ".address")
+
+
+def _listening(port: int, otherwise: int) -> socket.socket:
+    """Return a socket of this computer that listens on a port; if that is taken, on another."""
+    with contextlib.ExitStack() as undo:
+        listener = undo.enter_context(socket.socket())
+        if os.name == "posix":  # elsewhere it would share the port with a stranger
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind(("127.0.0.1", port))
+            listener.listen(100)  # who follows the address at once waits, and is not turned away
+        except OSError as exc:
+            if otherwise == port:
+                raise ParameterError(f"port {port} cannot be used: {exc.strerror}") from None
+            return _listening(otherwise, otherwise)
+        undo.pop_all()
+        return listener

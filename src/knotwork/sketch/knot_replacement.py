@@ -103,7 +103,7 @@ def with_change(curve: Spline, change: Change, spacing: str | Array = "even") ->
 def _gone_on(curve: Spline, polygon: Array, change: Change, spacing: str | Array) -> Array | None:
     """Return the knots of a curve that goes on at an end, or that loses the vertex there.
 
-    None if neither end changes, if the curve is not clamped there, or if the knot that would be the new end is multiple.
+    None if neither end changes, if it is not clamped, or if the knot that would be the new end is multiple.
     """
     t, n, P = curve.space.knots, curve.space.degree, curve.points
     if change.last < len(P):  # at the start: the same, backwards
