@@ -5,10 +5,10 @@ BIN := .venv/bin
 # Processes that share the tests: all cores unless told otherwise, as in `make test CORES=1`.
 CORES ?= auto
 
-.PHONY: help demo test thorough bounds lint bench methods crossovers accuracy clean
+.PHONY: help demo test thorough bounds lint bench bench-removal methods crossovers accuracy clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
 demo: .venv/installed  ## reduce a coastline and a drawing, and show what happened
 	$(BIN)/python examples/demo.py
@@ -30,6 +30,10 @@ lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src
 
 bench: .venv/tested  ## race this library and the peers that are installed
 	$(BIN)/python benchmarks/peers.py
+
+bench-removal: .venv/tested  ## control points that `reduce` leaves, and its time, beside peers
+	$(BIN)/python benchmarks/removal.py
+	$(BIN)/python benchmarks/removal_surfaces.py
 
 methods: .venv/tested  ## race all methods of knot insertion; docs/figures_insertion_study.py draws the result
 	$(BIN)/python benchmarks/methods.py

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     )
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
-    from knotwork.removal import Distance, Matching, Reduction, distance_bound, fit, reduce, relative, remove
+    from knotwork.removal import Distance, Matching, Reduction, distance_bound, fit, reduce, relative, removable, remove
     from knotwork.space import SplineSpace
     from knotwork.spline import Spline
 
@@ -98,6 +98,7 @@ __all__ = [
     "read",
     "reduce",
     "relative",
+    "removable",
     "remove",
     "segment",
     "split",
@@ -151,7 +152,17 @@ _PARTS = {
     ),
     "plotting": ("plot",),
     "progressive": ("blossom", "segment"),
-    "removal": ("Distance", "Matching", "Reduction", "distance_bound", "fit", "reduce", "relative", "remove"),
+    "removal": (
+        "Distance",
+        "Matching",
+        "Reduction",
+        "distance_bound",
+        "fit",
+        "reduce",
+        "relative",
+        "removable",
+        "remove",
+    ),
     "space": ("SplineSpace",),
     "spline": ("Spline",),
     "stability": (),

@@ -181,3 +181,27 @@ def test_options_that_are_not_known(option):
         kw.reduce(kw.curve([[0, 0], [1, 1], [2, 0], [4, 4], [5, 5]]), 0.1, **option)
     with pytest.raises(kw.errors.ParameterError, match="fit takes points"):
         kw.reduce([[0, 0], [1, 1], [2, 0]], 0.1)
+
+
+def test_weights_tell_which_knots_matter():
+    few = kw.curve(np.random.default_rng(2).standard_normal((8, 2)))
+    many = kw.insert(few, [0.1, 0.33, 0.33, 0.9])
+    found = kw.removable(many, 1e-6)
+    assert found.knots.tolist() == many.space.breaks[1:-1].tolist()
+    assert found.multiplicities.sum() == len(many.space.knots) - 8
+    assert found.knots[found.weights < 1].tolist() == [0.1, 0.33, 0.9]
+    assert (kw.removable(many, 2e-6).weights == found.weights / 2).all()
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    lines = found.plot().collections[0].get_segments()
+    assert [line[0][0] for line in lines] == found.knots.tolist()
+
+
+@pytest.mark.parametrize("effort", ["normal", "best"])
+def test_more_effort_never_leaves_more(effort):
+    for seed in range(6):
+        curve = random_curve(seed, ["plain", "periodic"][seed % 2])
+        tolerance = float(np.ptp(curve.points, axis=0).max()) / 50
+        fast, slow = (kw.reduce(curve, tolerance, effort=e) for e in ("fast", effort))
+        assert slow.spline.space.dimension <= fast.spline.space.dimension
+        assert off_in_fractions(curve, slow) <= Fraction(slow.bound) ** 2 <= Fraction(tolerance) ** 2

@@ -5,5 +5,6 @@ from knotwork.removal.fitting import fit
 from knotwork.removal.result import Reduction
 from knotwork.removal.shapes import Distance, Matching, distance_bound
 from knotwork.removal.tolerance import relative
+from knotwork.removal.weights import removable
 
-__all__ = ["Distance", "Matching", "Reduction", "distance_bound", "fit", "reduce", "relative", "remove"]
+__all__ = ["Distance", "Matching", "Reduction", "distance_bound", "fit", "reduce", "relative", "removable", "remove"]

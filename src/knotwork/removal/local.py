@@ -32,6 +32,21 @@ class Data(NamedTuple):
     degree: int
     #: whether changes are Euclidean lengths, and not the largest of their components
     euclidean: bool
+    #: which knots may go
+    may: Array
+
+
+class Effort(NamedTuple):
+    """How much is done for each fit."""
+
+    #: B-splines on each side of those that a knot acts in that are fitted too
+    around: int
+    #: rows of an interval that take part, at most
+    few: int
+    #: fits after the least squares, towards the least maximum
+    passes: int
+    #: halvings of the way to the next knot, in the search for better places of the knots beside; 0 for none
+    moves: int
 
 
 class Links(NamedTuple):
@@ -63,6 +78,10 @@ class Room(NamedTuple):
     point: Array
     #: which B-splines were fitted
     span: Array
+    #: the place of the four knots that may have moved, or -1; where they were, and the one that was moved last
+    lead: Array
+    old: Array
+    back: Array
 
 
 @kernel
@@ -162,16 +181,17 @@ def missed(i, v, data):
 
 
 @kernel
-def refit(q, around, few, final, passes, data, links, room):
+def refit(q, effort, final, data, links, room):
     """Fit the curve without knot q, nearby; return the square of the most that a row there is off by.
 
-    `around` B-splines on each side of those that q acts in are fitted too. `few`: as many rows of each interval are
-    taken, or all for 0; those that are measured are the same, unless `final`: then all are.
+    Of each interval as many rows are taken as the effort says; those that are measured are the same, unless `final`:
+    then all are. With moves, the two knots on each side of q are tried at other places too.
     """
     t, n, period = data.t, data.degree, data.period
     k = n + 1
-    side = k + around + n
+    side = k + effort.around + n
     s, at = room.s, room.at
+    room.lead[0] = -1
     # the knots nearby
     start, lead = q, 0
     while lead < side:
@@ -198,14 +218,60 @@ def refit(q, around, few, final, passes, data, links, room):
         u1 = size - k - (n if period > 0 or at[size - 1] < len(t) - 1 else 0)
         low, high = u0, u1 + n
         band = min(k, u1 - u0)
-    return fitted(u0, u1, low, high, band, count if whole else 0, few, final, passes, data, links, room)
+    first, moves = lead - 2, 0
+    if not whole and first >= n + 1 and lead + 2 < size - n - 1:
+        room.lead[0] = first
+        moves = 8 * effort.moves
+        for j in range(4):
+            room.old[j] = at[first + j]
+    best, side = s[0] - s[0], -1
+    for trial in range(moves + 1 + (moves > 0)):
+        if 0 < trial <= moves:
+            side = moved(trial - 1, first, data, links, room)
+            if side < 0:
+                continue
+        cost = fitted(u0, u1, low, high, band, count if whole else 0, effort, final, data, links, room)
+        if trial == 0 or cost < best:
+            best = cost
+        elif trial <= moves:
+            move(side, room.back[0], data, room)
+    return best
 
 
 @kernel
-def fitted(u0, u1, low, high, band, turn, few, final, passes, data, links, room):
+def move(j, i, data, room):
+    """Let the knot at place j of those gathered be knot i of the original."""
+    room.at[j] = i
+    room.s[j] = knot_at(data.t, data.period, i)
+
+
+@kernel
+def moved(trial, first, data, links, room):
+    """Move one of the four knots from place `first` on as the trial says; return its place, or -1 if it cannot go.
+
+    In turn: the two in the middle, then those outside; to the left, then to the right; by a half of the way to the
+    next knot there, then by a quarter, and so on.
+    """
+    at, period = room.at, data.period
+    which = (trial // 2) % 4
+    j = first + (1, 2, 0, 3)[which]
+    halvings = trial // 8 + 1
+    left = trial % 2 == 0
+    gap = at[j] - at[j - 1] if left else at[j + 1] - at[j]
+    step = gap // 2**halvings
+    i = at[j] - step if left else at[j] + step
+    if step == 0 or not data.may[place(at[j], period)] or not data.may[place(i, period)]:
+        return -1
+    room.back[0] = at[j]
+    move(j, i, data, room)
+    return j
+
+
+@kernel
+def fitted(u0, u1, low, high, band, turn, effort, final, data, links, room):
     """Fit the B-splines u0 … u1 - 1 over the gathered knots to the rows between knots `low` and `high`.
 
-    `turn` of them make a period, if that is what was gathered, or 0. Least squares, then `passes` more with larger
+    `turn` of them make a period, if that is what was gathered, or 0. Least squares, then some passes more with larger
     weights where the curve is off more (Lawson), the best of which counts: it comes near to the least maximum.
     """
     t, d, n, period = data.t, data.d, data.degree, data.period
@@ -214,7 +280,7 @@ def fitted(u0, u1, low, high, band, turn, few, final, passes, data, links, room)
     used = 0
     for p in range(low, high):
         lo, m = at[p], min(at[p + 1] - 1, last) - at[p] + 1
-        take = m if few == 0 or m <= few else few
+        take = min(m, effort.few)
         rows = m if final else take
         for r in range(rows):
             i = lo + (r * m) // rows
@@ -227,7 +293,7 @@ def fitted(u0, u1, low, high, band, turn, few, final, passes, data, links, room)
             used += 1
     room.span[0], room.span[1] = u0, u1
     best = s[0] - s[0]
-    for step in range(passes + 1):
+    for step in range(effort.passes + 1):
         least_squares_of_rows(used, u0, u1, band, turn, data, links, room)
         worst = s[0] - s[0]
         for r in range(used):
@@ -317,3 +383,13 @@ def take_out(q, data, links, room):
     links.alive[q] = False
     links.after[links.before[q]] = links.after[q]
     links.before[links.after[q]] = links.before[q]
+    if room.lead[0] < 0:
+        return
+    first = room.lead[0]
+    for j in range(4):
+        links.alive[place(room.old[j], period)] = False
+    for j in range(first - 1, first + 4):
+        here, there = place(room.at[j], period), place(room.at[j + 1], period)
+        links.after[here] = there
+        links.before[there] = here
+        links.alive[here] = True

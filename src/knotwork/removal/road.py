@@ -12,7 +12,7 @@ Each removal takes a bounded number of B-splines, and each knot goes once, so th
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.local import refit, take_out
+from knotwork.removal.local import place, refit, take_out
 
 #: what is known of a knot's cost: nothing that still holds, the cost at some rows, the cost at all rows
 STALE, ROUGH, EXACT = 0, 1, 2
@@ -42,16 +42,33 @@ def sift(heap, size, r, cost):
 @kernel
 def forget(q, around, data, links, known):
     """Mark the costs of the knots near q as no longer known."""
-    reach = data.degree + 1 + around
     i = j = q
-    for _ in range(reach):
+    for _ in range(data.degree + 3 + around):
         i, j = links.before[i], links.after[j]
         known[i] = STALE
         known[j] = STALE
 
 
 @kernel
-def follow(heap, size, least, steps, around, few, passes, data, links, room, cost, known, limit):
+def rename(heap, size, data, room, cost, known):
+    """Put knots that were moved in the place of those that they were."""
+    if room.lead[0] < 0:
+        return
+    for j in range(4):
+        old, new = place(room.old[j], data.period), place(room.at[room.lead[0] + j], data.period)
+        if old != new:
+            cost[new] = cost[old]
+            known[new] = STALE
+            for r in range(size):
+                if heap[r] == old:
+                    heap[r] = -1 - new  # a knot may come to where another was
+    for r in range(size):
+        if heap[r] < 0:
+            heap[r] = -1 - heap[r]
+
+
+@kernel
+def follow(heap, size, least, steps, effort, data, links, room, cost, known, limit):
     """Remove up to `steps` knots while the cheapest costs at most `limit`, a square, and more than `least` could go.
 
     Returns how many could go still, and whether the road ends here.
@@ -61,8 +78,8 @@ def follow(heap, size, least, steps, around, few, passes, data, links, room, cos
         if size <= least or cost[heap[0]] > limit:
             return size, True
         q = heap[0]
-        exact = known[q] == EXACT or few == 0 or known[q] == ROUGH
-        cost[q] = refit(q, around, few, exact, passes, data, links, room)
+        exact = known[q] != STALE
+        cost[q] = refit(q, effort, exact, data, links, room)
         known[q] = EXACT if exact else ROUGH
         sift(heap, size, 0, cost)
         if exact and heap[0] == q and cost[q] <= limit:
@@ -70,7 +87,8 @@ def follow(heap, size, least, steps, around, few, passes, data, links, room, cos
             heap[0] = heap[size]
             if size > 0:
                 sift(heap, size, 0, cost)
-            forget(q, around, data, links, known)
+            forget(q, effort.around, data, links, known)
             take_out(q, data, links, room)
+            rename(heap, size, data, room, cost, known)
             done += 1
     return size, False

@@ -19,7 +19,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.insertion.refinement import matrix_to, refine
 from knotwork.linear.least_squares import least_squares
-from knotwork.removal.local import Data, Links, Room
+from knotwork.removal.local import Data, Effort, Links, Room
 from knotwork.removal.problem import Original, Trial
 from knotwork.removal.result import Progress
 from knotwork.removal.road import follow
@@ -36,19 +36,19 @@ DENSE = 0.6
 class Manner(NamedTuple):
     """A way to follow roads."""
 
-    #: how much less than the tolerance a start is off; 0 to start with all knots
-    slack: float
     #: fits after the least squares, towards the least maximum
     passes: int
+    #: halvings in the search for better places of knots
+    moves: int = 0
+    #: what the first start is off by
+    first: float = 1.0
 
 
-#: curves of more control points than this start from few knots only
-FROM_ALL = 2000
 #: the ways that each effort tries; the result with the fewest knots counts
 MANNERS = {
-    "fast": (Manner(1, 2),),
-    "normal": (Manner(1, 2), Manner(0, 1)),
-    "best": (Manner(1, 2), Manner(4, 2), Manner(4, 5), Manner(0, 1), Manner(0, 3)),
+    "fast": (Manner(2),),
+    "normal": (Manner(2), Manner(2, moves=1)),
+    "best": (Manner(2), Manner(2, moves=1), Manner(4, moves=4), Manner(2, moves=3, first=0.5)),
 }
 
 
@@ -93,9 +93,9 @@ class Roads:
             d = (d - self.origin) * self.unit
         period = N if space.periodic else 0
         euclidean = original.tolerance.euclidean
-        self.data = Data(space.knots, np.ascontiguousarray(d), weight, pinned, reach, period, n, euclidean)
+        self.data = Data(space.knots, np.ascontiguousarray(d), weight, pinned, reach, period, n, euclidean, candidates)
         self.shape = shape
-        self.starts: list[Start] = []
+        self.starts: dict[float, list[Start]] = {}
 
     def limit(self) -> float:
         """Return the largest change, in our units, whose proven bound keeps the tolerance."""
@@ -107,15 +107,16 @@ class Roads:
         shape = self.shape if len(admitted) > 1 else 1.0
         return float((admitted / shape).min()) * self.scale
 
-    def level(self, j: int) -> Start:
-        """Return the start that is off by at most 4^-j."""
-        while len(self.starts) <= j:
-            self.starts.append(self._refined(4.0 ** -len(self.starts)))
-        return self.starts[j]
+    def level(self, first: float, j: int) -> Start:
+        """Return the start that is off by at most first · 4^-j."""
+        starts = self.starts.setdefault(first, [])
+        while len(starts) <= j:
+            fixed = ~self.candidates | ~self.original.space.removable
+            starts.append(self._refined(starts[-1].mask if starts else fixed, first * 4.0 ** -len(starts)))
+        return starts[j]
 
-    def _refined(self, most: float) -> Start:
-        """Return the last start with knots added until it is off by at most that."""
-        mask = self.starts[-1].mask if self.starts else ~self.candidates | ~self.original.space.removable
+    def _refined(self, mask: Array, most: float) -> Start:
+        """Return least squares over knots, with more added until it is off by at most that."""
         if self.data.period:
             mask = mask.copy()
             mask[0] = True
@@ -164,21 +165,18 @@ class Roads:
 
     def left(self, manner: Manner, limit: float, progress: Progress | None) -> Links:
         """Return the knots left within a limit, with the curve over them."""
-        if manner.slack == 0:
-            start = Start(np.ones(len(self.data.t), bool), self.data.d, 0.0)
-            return self._along(start, manner, limit, 0, progress)
         j = 0
-        while manner.slack * 4.0**-j > limit and not self.level(j).mask.all():
+        while manner.first * 4.0**-j > limit and not self.level(manner.first, j).mask.all():
             j += 1
-        links = self._along(self.level(j), manner, limit, 0, progress)
+        links = self._along(self.level(manner.first, j), manner, limit, 0, progress)
         count, least = self._count(links), 0
         for coarser in range(j - 1, -1, -1):
-            start = self.level(coarser)
+            start = self.level(manner.first, coarser)
             if int(start.mask.sum()) - (self.data.period > 0) <= max(count, least):
                 break
-            least = max(least, self._count(self._along(start, manner, manner.slack * 4.0**-coarser, 0, None)))
+            least = max(least, self._count(self._along(start, manner, manner.first * 4.0**-coarser, 0, None)))
         if least > count:
-            links = self._along(self.level(j), manner, limit, least, None)
+            links = self._along(self.level(manner.first, j), manner, limit, least, None)
         return links
 
     def _count(self, links: Links) -> int:
@@ -204,12 +202,10 @@ class Roads:
         total = int(start.mask[:places].sum())
         least_in_heap = max(least - (total - len(heap)), 1 if data.period and total == len(heap) else 0, 0)
         cost, known = np.zeros(places), np.zeros(places, np.int8)
-        room, around, square = room_for(data), (n + 5) // 2, limit * limit
+        room, effort, square = room_for(data), Effort((n + 5) // 2, FEW, manner.passes, manner.moves), limit * limit
         size, ended = len(heap), False
         while not ended:
-            size, ended = follow(
-                heap, size, least_in_heap, STEPS, around, FEW, manner.passes, data, links, room, cost, known, square
-            )
+            size, ended = follow(heap, size, least_in_heap, STEPS, effort, data, links, room, cost, known, square)
             if progress is not None:
                 progress(0.9 * (1 - size / max(len(heap), 1)))
         return links
@@ -293,6 +289,9 @@ def room_for(data: Data) -> Room:
         row=floats(most),
         point=floats(d),
         span=ints(2),
+        lead=ints(1),
+        old=ints(4),
+        back=ints(1),
     )
 
 
@@ -314,8 +313,7 @@ def reduced(
 ) -> tuple[Trial, Array] | None:
     """Return the fewest knots that the roads of an effort leave, or None if rounding lets none of them be proven."""
     roads = Roads(original, candidates)
-    limit, few = roads.limit(), original.space.dimension <= FROM_ALL
-    manners = [manner for manner in MANNERS[effort] if few or manner.slack > 0]
+    limit, manners = roads.limit(), MANNERS[effort]
     best: tuple[Trial, Array] | None = None
     for k, manner in enumerate(manners):
         for shrink in (1.0, 1 - 2.0**-10, 0.75, 0.25):
