@@ -86,12 +86,12 @@ def _attempt(
 ) -> Found | None:
     """Fit without the picked copies of candidate knots; None if the tolerance does not admit it."""
     left = mask.copy()
-    left[_last_copies(candidates, owner, copies, picked)] = False
+    left[last_copies(candidates, owner, copies, picked)] = False
     trial = original.fit(left)
     return (trial, left) if original.admits(trial) else None
 
 
-def _last_copies(candidates: Array, owner: Array, copies: Array, picked: Array) -> Array:
+def last_copies(candidates: Array, owner: Array, copies: Array, picked: Array) -> Array:
     """Return the places of as many last copies of each candidate knot as were picked of its copies."""
     taken = np.bincount(owner[picked], minlength=len(copies))
     from_end = np.cumsum(copies)[owner] - 1 - np.arange(len(owner))

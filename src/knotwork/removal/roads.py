@@ -18,12 +18,15 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.insertion.refinement import matrix_to, refine
+from knotwork.knots import distinct
 from knotwork.linear.least_squares import least_squares
 from knotwork.removal.local import Data, Effort, Links, Room
+from knotwork.removal.lyche_morken import Found, last_copies
 from knotwork.removal.problem import Original, Trial
 from knotwork.removal.result import Progress
 from knotwork.removal.road import follow
 from knotwork.space import SplineSpace
+from knotwork.spline import Spline
 
 #: rows of an interval that take part in a fit, where it has more
 FEW = 6
@@ -62,9 +65,17 @@ class Start(NamedTuple):
 
 
 class Roads:
-    """The roads of one curve in floating point, in units that make it about as large as 1."""
+    """The roads of one curve in floating point, in units that make it about as large as 1.
 
-    def __init__(self, original: Original, candidates: Array) -> None:
+    `free` is the curve without knots that go for nothing, if there are any: roads start from it.
+    """
+
+    def __init__(self, original: Original, candidates: Array, free: Found | None = None) -> None:
+        self.whole, self.there = original, np.ones(len(candidates), bool)
+        if free:
+            trial, self.there = free
+            original = Original(trial.spline, 0, original.tolerance.given, original.held(self.there)[1])
+            candidates = candidates[self.there]
         self.original, self.candidates = original, candidates
         spline, space = original.spline, original.space
         n, N = space.degree, space.dimension
@@ -210,14 +221,14 @@ class Roads:
                 progress(0.9 * (1 - size / max(len(heap), 1)))
         return links
 
-    def result(self, links: Links) -> tuple[Trial, Array]:
+    def result(self, links: Links) -> Found:
         """Return the spline over the knots left, with its bound; and the mask of those knots."""
         o, data = self.original, self.data
         space, like = o.space, o.spline.coefficients
         kept = self._kept(links)
         mask = np.zeros(len(data.t), bool)
         mask[kept] = True
-        if mask[: len(links.before)].all():
+        if mask[: len(links.before)].all() and o is self.whole:
             return o.unchanged, np.ones(len(mask), bool)
         count = len(kept) if data.period else len(kept) - space.order
         c = links.c[kept[:count]] / self.unit
@@ -232,27 +243,33 @@ class Roads:
             rows, columns = o.held(mask)
             c[columns] = like[rows]
             spline = o.spline.with_axis(0, SplineSpace.trusted(space.degree, data.t[mask], False), c)
-            return o.measured(spline, data.t[~mask]), mask
+            return self._measured(spline, mask)
         mask[-1] = True
         if mask[0]:
             rows, columns = o.held(mask)
             c[columns] = like[rows]
-            spline = o.spline.with_axis(0, SplineSpace.trusted(space.degree, data.t[mask], True), c)
-            return o.measured(spline, data.t[~mask]), mask
-        return self._reseamed(mask, kept, c), mask
+            return self._measured(o.spline.with_axis(0, SplineSpace.trusted(space.degree, data.t[mask], True), c), mask)
+        return self._reseamed(mask, kept, c)
 
-    def _reseamed(self, mask: Array, kept: Array, c: Array) -> Trial:
+    def _measured(self, spline: Spline, mask: Array) -> Found:
+        """Return a spline over the knots in `mask` with its bound, and its knots among all of the curve's."""
+        of_all = self.there.copy()
+        of_all[self.there] = mask
+        return self.whole.measured(spline, self.whole.space.knots[~of_all]), of_all
+
+    def _reseamed(self, mask: Array, kept: Array, c: Array) -> Found:
         """Return the spline whose period starts at another knot than the original's."""
         o, t = self.original, self.data.t
         end = t[-1] + (t[kept[0]] - t[0])
         moved = o.spline.with_axis(0, SplineSpace(o.space.degree, np.append(t[kept], end), periodic=True), c)
         seam = refine(moved, 0, t[-1:])
         back = np.roll(seam.coefficients, 1, axis=0)  # the seam was the last knot of the moved period
-        mask = mask.copy()
-        mask[0] = True
-        there = o.spline.with_axis(0, SplineSpace.trusted(o.space.degree, t[mask], True), np.ascontiguousarray(back))
-        found = o.measured(there, t[~mask])
-        return Trial(moved, found.bound + o.floor, found.found)
+        with_seam = mask.copy()
+        with_seam[0] = True
+        space = SplineSpace.trusted(o.space.degree, t[with_seam], True)
+        found, of_all = self._measured(o.spline.with_axis(0, space, np.ascontiguousarray(back)), with_seam)
+        of_all[0] = False
+        return Trial(moved, found.bound + self.whole.floor, found.found), of_all
 
 
 def power_of_two_over(size: float) -> float:
@@ -308,13 +325,15 @@ def linked(mask: Array, data: Data, c: Array) -> Links:
     return Links(before, after, full, mask[:places].copy())
 
 
-def reduced(
-    original: Original, candidates: Array, effort: str, progress: Progress | None
-) -> tuple[Trial, Array] | None:
-    """Return the fewest knots that the roads of an effort leave, or None if rounding lets none of them be proven."""
-    roads = Roads(original, candidates)
+def reduced(original: Original, candidates: Array, effort: str, progress: Progress | None) -> Found | None:
+    """Return the fewest knots that the roads of an effort leave, or None if rounding lets none of them be proven.
+
+    What can go for nothing goes first, so that no more is left than at tolerance 0.
+    """
+    free = for_nothing(original, candidates)
+    roads = Roads(original, candidates, free)
     limit, manners = roads.limit(), MANNERS[effort]
-    best: tuple[Trial, Array] | None = None
+    best = free if free and original.admits(free[0]) else None
     for k, manner in enumerate(manners):
         for shrink in (1.0, 1 - 2.0**-10, 0.75, 0.25):
 
@@ -330,3 +349,20 @@ def reduced(
     if progress is not None:
         progress(1.0)
     return best
+
+
+def for_nothing(original: Original, candidates: Array) -> Found | None:
+    """Return the curve without the knots that change nothing but for rounding; None if there are none."""
+    t = original.space.knots
+    inner = candidates & original.space.removable
+    if not inner.any():
+        return None
+    values, copies = distinct(t[inner])
+    costs = original.costs(original.unchanged, values, copies)
+    gone = np.flatnonzero(costs * original.allowed.min() <= original.floor.min())
+    if not len(gone):
+        return None
+    mask = np.ones(len(t), bool)
+    mask[last_copies(inner, np.repeat(np.arange(len(values)), copies), copies, gone)] = False
+    trial = original.fit(mask)
+    return (trial, mask) if (trial.found <= original.floor).all() else None
