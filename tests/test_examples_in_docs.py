@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import importlib
+import inspect
 import pkgutil
 import re
 import shutil
@@ -44,9 +45,70 @@ def test_the_examples_of_a_docstring(test, tmp_path, monkeypatch):
     assert runner.run(test, out=told.append).failed == 0, "".join(told)
 
 
-def test_the_main_names_have_examples():
-    found = {test.name.rpartition(".")[2] for name in MODULES for test in examples(name)}
-    assert found >= {"SplineSpace", "Spline", "curve", "insert", "remove", "reduce", "to_bezier", "elevate"}
+PARTS = ("arithmetic", "diagrams", "insertion", "progressive", "stability")
+#: values, not functions or classes
+NUMBERS = {"__version__", "DELTA", "METHODS", "FIGURES", "SCHEMES"}
+#: what other rooms of the house call
+INNER = [
+    "axis",
+    "by_axis",
+    "cached",
+    "inside",
+    "new_knots",
+    "of",
+    "refined_by",
+    "refinement",
+    "rounded_inside",
+    "trusted",
+    "with_axis",
+]
+
+
+def public(module):
+    """Return the names that a module offers, but for those of modules and of values."""
+    return [name for name in dir(module) if name not in {*PARTS, "errors", *NUMBERS}]
+
+
+def shows(thing, name):
+    """Tell whether the help of a thing has an example that uses it."""
+    lines = [line for line in inspect.getdoc(thing).splitlines() if line.startswith((">>>", "..."))]
+    return any(name in line for line in lines)
+
+
+@pytest.mark.parametrize("name", public(kw))
+def test_every_name_of_the_face_has_an_example_that_can_be_pasted(name):
+    help_of = inspect.getdoc(getattr(kw, name))
+    assert ">>> import knotwork as kw" in help_of or "numpy as np, knotwork as kw" in help_of
+    assert shows(getattr(kw, name), "kw.")
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_every_name_of_a_part_has_an_example(part):
+    module = getattr(kw, part)
+    without = [
+        name for name in public(module) if name in module.__all__ and ">>>" not in inspect.getdoc(getattr(module, name))
+    ]
+    assert not without
+
+
+@pytest.mark.parametrize("kind", [kw.Spline, kw.SplineSpace])
+def test_every_method_has_an_example(kind):
+    methods = [name for name, _ in inspect.getmembers(kind, inspect.isroutine) if not name.startswith("_")]
+    assert not [name for name in methods if name not in INNER and not shows(getattr(kind, name), name)]
+
+
+def test_the_page_of_names_has_them_all():
+    """Those of the face, and the methods and attributes of splines and spaces; and no other."""
+    page = (ROOT / "docs" / "reference.md").read_text()
+    listed = re.findall(r"^- `kw\.([\w.]+)", page, re.MULTILINE)
+    of_kinds = [f"{kind.__name__}.{name}" for kind in (kw.Spline, kw.SplineSpace) for name in dir(kind)]
+    of_parts = [f"{part}.{name}" for part in ("insertion", "stability") for name in getattr(kw, part).__all__]
+    names = [name for name in [*dir(kw), *of_kinds, *of_parts] if not name.rpartition(".")[2].startswith("_")]
+    known = {name for name in names if name.rpartition(".")[2] not in INNER}
+    assert len(listed) == len(set(listed))
+    lacking = {name for name in known if name not in listed and not name.startswith("insertion.")}
+    assert not lacking, f"docs/reference.md lacks {sorted(lacking)}"
+    assert not set(listed) - known, "docs/reference.md lists what is not there"
 
 
 def run(block, name, names):

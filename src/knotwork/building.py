@@ -31,7 +31,8 @@ def curve(points: Any, degree: int = 3, knots: Any = None, weights: Any = None, 
 
     Examples
     --------
-    >>> c = curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
     >>> c(0.5).tolist()
     [2.0, 1.5]
     """
@@ -60,7 +61,8 @@ def surface(
 
     Examples
     --------
-    >>> s = surface([[0, 1], [2, 3]], degree=1)
+    >>> import knotwork as kw
+    >>> s = kw.surface([[0, 1], [2, 3]], degree=1)
     >>> float(s(0.5, 0.5))
     1.5
     """
@@ -89,7 +91,8 @@ def volume(
 
     Examples
     --------
-    >>> v = volume([[[0, 1], [2, 3]], [[4, 5], [6, 7]]], degree=1)
+    >>> import knotwork as kw
+    >>> v = kw.volume([[[0, 1], [2, 3]], [[4, 5], [6, 7]]], degree=1)
     >>> float(v(1, 0.5, 0))
     5.0
     """

@@ -66,7 +66,8 @@ class SplineSpace(Frozen):
 
     Examples
     --------
-    >>> S = SplineSpace(2, [0, 0, 0, 1, 2, 2, 2])
+    >>> import knotwork as kw
+    >>> S = kw.SplineSpace(2, [0, 0, 0, 1, 2, 2, 2])
     >>> S.dimension, S.domain, S.nodes.tolist()
     (4, (0.0, 2.0), [0.0, 0.5, 1.5, 2.0])
     >>> S <= S.with_knots([0.5])
@@ -110,14 +111,28 @@ class SplineSpace(Frozen):
 
     @classmethod
     def clamped(cls, degree: int, n: int) -> Self:
-        """Return the space of dimension `n` over [0, 1] with even interior knots and clamped ends."""
+        """Return the space of dimension `n` over [0, 1] with even interior knots and clamped ends.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace.clamped(2, 4).knots.tolist()
+        [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0]
+        """
         _require_dimension(degree, n, require_degree(degree) + 1)
         inner = _even(n - degree)
         return cls(degree, np.concatenate([np.zeros(degree), inner, np.ones(degree)]))
 
     @classmethod
     def uniform(cls, degree: int, n: int, *, periodic: bool = False) -> Self:
-        """Return the space of dimension `n` with evenly spaced knots and the domain [0, 1], not clamped."""
+        """Return the space of dimension `n` with evenly spaced knots and the domain [0, 1], not clamped.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace.uniform(1, 3).knots.tolist(), kw.SplineSpace.uniform(2, 4, periodic=True).knots.tolist()
+        ([-0.5, 0.0, 0.5, 1.0, 1.5], [0.0, 0.25, 0.5, 0.75, 1.0])
+        """
         degree = require_degree(degree)
         _require_dimension(degree, n, 1 if periodic else degree + 1)
         if periodic:
@@ -131,6 +146,12 @@ class SplineSpace(Frozen):
         """Return the space of continuous pieces over `breaks`: ends `degree + 1` times, the others `degree`.
 
         For degree 0 the pieces jump.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace.bezier(2, [0, 1, 3]).knots.tolist()
+        [0.0, 0.0, 0.0, 1.0, 1.0, 3.0, 3.0, 3.0]
         """
         degree = require_degree(degree)
         x = sorted_knots(breaks, "breaks")
@@ -163,9 +184,10 @@ class SplineSpace(Frozen):
 
         Examples
         --------
-        >>> SplineSpace.from_breaks(2, [0, 1, 3], [3, 2, 3])
+        >>> import knotwork as kw
+        >>> kw.SplineSpace.from_breaks(2, [0, 1, 3], [3, 2, 3])
         SplineSpace(2, [0.0, 0.0, 0.0, 1.0, 1.0, 3.0, 3.0, 3.0])
-        >>> SplineSpace.from_breaks(2, [0, 1, 3], [2, 1, 2], periodic=True)
+        >>> kw.SplineSpace.from_breaks(2, [0, 1, 3], [2, 1, 2], periodic=True)
         SplineSpace(2, [0.0, 0.0, 1.0, 3.0], periodic=True)
         """
         degree = require_degree(degree)
@@ -193,9 +215,10 @@ class SplineSpace(Frozen):
 
         Examples
         --------
-        >>> SplineSpace.from_opennurbs(3, [0, 0, 0, 1, 1, 1])
+        >>> import knotwork as kw
+        >>> kw.SplineSpace.from_opennurbs(3, [0, 0, 0, 1, 1, 1])
         SplineSpace(3, [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
-        >>> SplineSpace.from_opennurbs(2, range(-1, 7), periodic=True)
+        >>> kw.SplineSpace.from_opennurbs(2, range(-1, 7), periodic=True)
         SplineSpace(2, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], periodic=True)
         """
         degree = require_degree(degree)
@@ -236,7 +259,14 @@ class SplineSpace(Frozen):
         return distinct(self.knots[n : len(self.knots) - n])[0]
 
     def multiplicity(self, x: Any) -> int:
-        """Return how often the knot `x` occurs; 0 if it is not a knot."""
+        """Return how often the knot `x` occurs; 0 if it is not a knot.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace.bezier(2, [0, 1, 3]).multiplicity(1)
+        2
+        """
         t = self.knots
         if self.periodic and x == t[-1]:
             x = t[0]
@@ -296,7 +326,8 @@ class SplineSpace(Frozen):
 
         Examples
         --------
-        >>> S = SplineSpace.bezier(2, [0, 1])
+        >>> import knotwork as kw
+        >>> S = kw.SplineSpace.bezier(2, [0, 1])
         >>> S.basis([0, 0.5]).toarray().tolist()
         [[1.0, 0.0, 0.0], [0.25, 0.5, 0.25]]
         >>> S.basis(0.5, derivative=1).toarray().tolist()
@@ -391,6 +422,12 @@ class SplineSpace(Frozen):
         ------
         KnotError
             If a knot is outside the domain or would be repeated more than `degree + 1` times.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace(1, [0, 0, 2, 2]).with_knots([1, 0.5])
+        SplineSpace(1, [0.0, 0.0, 0.5, 1.0, 2.0, 2.0])
         """
         return self.refinement(knots)[0]
 
@@ -448,6 +485,12 @@ class SplineSpace(Frozen):
         ------
         KnotError
             If a knot is not there as often as it is to be removed, or if removing it would change the domain.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace(1, [0, 0, 1, 1, 2, 2]).without_knots(1)
+        SplineSpace(1, [0.0, 0.0, 1.0, 2.0, 2.0])
         """
         x = sorted_list(knots, "knots to remove", self.knots)
         if self.periodic:
@@ -478,7 +521,8 @@ class SplineSpace(Frozen):
 
         Examples
         --------
-        >>> SplineSpace(1, [0, 0, 1, 2, 2]).with_domain(-1, 1)
+        >>> import knotwork as kw
+        >>> kw.SplineSpace(1, [0, 0, 1, 2, 2]).with_domain(-1, 1)
         SplineSpace(1, [-1.0, -1.0, 0.0, 1.0, 1.0])
         """
         ends = in_arithmetic_of(self.knots, real_array([a, b], "domain", KnotError), "domain", KnotError)
@@ -495,7 +539,14 @@ class SplineSpace(Frozen):
         return SplineSpace(self.degree, moved, periodic=self.periodic)
 
     def in_exact_arithmetic(self) -> SplineSpace:
-        """Return the same space with each float knot as the Fraction of the same value."""
+        """Return the same space with each float knot as the Fraction of the same value.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.SplineSpace(0, [0, 0.5]).in_exact_arithmetic().knots.tolist()
+        [Fraction(0, 1), Fraction(1, 2)]
+        """
         if self.exact:
             return self
         return SplineSpace.trusted(self.degree, exact(self.knots, "knots", KnotError), self.periodic)

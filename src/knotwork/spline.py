@@ -40,8 +40,9 @@ class Spline(Frozen):
 
     Examples
     --------
-    >>> S = SplineSpace(2, [0, 0, 0, 1, 1, 1])
-    >>> f = Spline(S, [0, 0, 1])
+    >>> import knotwork as kw
+    >>> S = kw.SplineSpace(2, [0, 0, 0, 1, 1, 1])
+    >>> f = kw.Spline(S, [0, 0, 1])
     >>> float(f(0.5)), f.derivative().coefficients.tolist()
     (0.25, [0.0, 2.0])
     """
@@ -261,6 +262,12 @@ class Spline(Frozen):
         ndarray, shape (order + 1, …, *broadcast shape, d)
             ``[i]`` is the i-th derivative of a curve, ``[i, j]`` the derivative ∂ᵢᵤ∂ⱼᵥ of a surface. Rational splines
             are differentiated by the quotient rule. At a knot, the derivative from the right.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.curve([0, 0, 4], degree=2).derivatives(0.5, 2).tolist()  # of 4 u²
+        [1.0, 4.0, 8.0]
         """
         if not u_and_order:
             raise ParameterError("no parameters given; expected them and then the order of derivative")
@@ -329,6 +336,12 @@ class Spline(Frozen):
         ----------
         matrix : array_like, shape (e, d), or a number
         shift : array_like, shape (e,), or a number
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.curve([[1, 0], [1, 2]], degree=1).transform([[0, -1], [1, 0]], shift=[5, 0]).points.tolist()
+        [[5.0, 1.0], [3.0, 1.0]]
         """
         k, dtype = len(self.spaces), self.coefficients.dtype
         A, b = self._in_our_arithmetic(matrix, "matrix"), self._in_our_arithmetic(shift, "shift")
@@ -361,7 +374,14 @@ class Spline(Frozen):
         return in_arithmetic_of(self.coefficients, x, what, PointError)
 
     def reverse(self, axis: int = 0) -> Spline:
-        """Return the spline run backwards in one parameter: u becomes a + b - u over the same domain [a, b]."""
+        """Return the spline run backwards in one parameter: u becomes a + b - u over the same domain [a, b].
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.curve([0, 1, 5], degree=1, knots=[0, 0, 1, 4, 4]).reverse().space.knots.tolist()
+        [0.0, 0.0, 3.0, 4.0, 4.0]
+        """
         axis = self.axis(axis)
         space, P = self.spaces[axis], self.coefficients
         a, b = space.domain
@@ -384,7 +404,8 @@ class Spline(Frozen):
 
         Examples
         --------
-        >>> f = Spline(SplineSpace(1, [0, 0, 1, 2, 2]), [0, 1, 4]).with_domain(10, 14)
+        >>> import knotwork as kw
+        >>> f = kw.Spline(kw.SplineSpace(1, [0, 0, 1, 2, 2]), [0, 1, 4]).with_domain(10, 14)
         >>> f.space.knots.tolist(), float(f(13))
         ([10.0, 10.0, 12.0, 14.0, 14.0], 2.5)
         """
@@ -404,7 +425,8 @@ class Spline(Frozen):
 
         Examples
         --------
-        >>> c = Spline(SplineSpace.uniform(1, 4, periodic=True), [0, 1, 2, 3])
+        >>> import knotwork as kw
+        >>> c = kw.Spline(kw.SplineSpace.uniform(1, 4, periodic=True), [0, 1, 2, 3])
         >>> c.with_seam(0.5).space.knots.tolist(), c.with_seam(0.5).coefficients.tolist()
         ([0.5, 0.75, 1.0, 1.25, 1.5], [2.0, 3.0, 0.0, 1.0])
         """
@@ -422,8 +444,9 @@ class Spline(Frozen):
 
         Examples
         --------
-        >>> S = SplineSpace.bezier(1, [0, 1])
-        >>> Spline([S, S], [[0, 1], [2, 3]]).isocurve(0.5).coefficients.tolist()
+        >>> import knotwork as kw
+        >>> S = kw.SplineSpace.bezier(1, [0, 1])
+        >>> kw.Spline([S, S], [[0, 1], [2, 3]]).isocurve(0.5).coefficients.tolist()
         [1.0, 2.0]
         """
         axis = self.axis(axis)
@@ -436,7 +459,14 @@ class Spline(Frozen):
         return Spline.trusted(rest, np.ascontiguousarray(c.squeeze(axis)), self.rational)
 
     def axis(self, axis: int) -> int:
-        """Return `axis` as a number from 0 on, or raise if there is no such parameter."""
+        """Return `axis` as a number from 0 on, or raise if there is no such parameter.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.surface([[0, 1], [2, 3]], degree=1).axis(-1)
+        1
+        """
         if (
             isinstance(axis, bool)
             or not isinstance(axis, int | np.integer)
@@ -462,7 +492,14 @@ class Spline(Frozen):
         return [(key, value) for key, value in enumerate(given) if value is not None]
 
     def in_exact_arithmetic(self) -> Spline:
-        """Return the same spline with each float as the Fraction of the same value."""
+        """Return the same spline with each float as the Fraction of the same value.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.curve([0.5, 0.25], degree=1).in_exact_arithmetic().coefficients.tolist()
+        [Fraction(1, 2), Fraction(1, 4)]
+        """
         if self.coefficients.dtype == object:
             return self
         spaces = tuple(space.in_exact_arithmetic() for space in self.spaces)
@@ -487,7 +524,8 @@ class Spline(Frozen):
 
         Examples
         --------
-        >>> half = Spline(SplineSpace.bezier(1, [0, 1]), [[0, 1], [2, 2]], rational=True)  # 2u / (1 + u)
+        >>> import knotwork as kw
+        >>> half = kw.Spline(kw.SplineSpace.bezier(1, [0, 1]), [[0, 1], [2, 2]], rational=True)  # 2u / (1 + u)
         >>> half.derivative().points.tolist(), half.derivative().weights.tolist()  # 2 / (1 + u)²
         ([[2.0], [1.0], [0.5]], [1.0, 2.0, 4.0])
         """
@@ -517,6 +555,12 @@ class Spline(Frozen):
         ------
         ParameterError
             If the spline is rational: its integral is not a spline.
+
+        Examples
+        --------
+        >>> import knotwork as kw
+        >>> kw.curve([0, 2], degree=1).antiderivative().coefficients.tolist()  # u²
+        [0.0, 0.0, 1.0]
         """
         axis = self.axis(axis)
         if self.rational:

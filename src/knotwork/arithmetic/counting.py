@@ -23,6 +23,13 @@ class Counts:
     """How many operations were done: additions (subtractions included), multiplications, divisions, combinations.
 
     A combination is one new point made from two: one call of the kernel `combine`.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> kw.insertion.count("boehm", c, 0.5).combinations
+    3
     """
 
     additions: int = 0
@@ -103,7 +110,16 @@ def _counted(kind: str, value: Fraction) -> Counting:
 
 @functools.total_ordering
 class Counting:
-    """An exact number that counts the additions, multiplications and divisions done with it, while `counting`."""
+    """An exact number that counts the additions, multiplications and divisions done with it, while `counting`.
+
+    Examples
+    --------
+    >>> from knotwork.arithmetic import Counting, counting
+    >>> with counting() as counts:
+    ...     result = Counting(2) * 3 + 1
+    >>> result.value, counts.multiplications, counts.additions
+    (Fraction(7, 1), 1, 1)
+    """
 
     __slots__ = ("value",)
 

@@ -21,7 +21,15 @@ from knotwork.spline import Spline
 
 
 class Unified(NamedTuple):
-    """Splines over one space in each parameter."""
+    """Splines over one space in each parameter.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> splines, bound = kw.unify([kw.curve([0, 1], degree=1), kw.curve([0, 0, 1], degree=2)])
+    >>> splines[0].points.tolist(), splines[0].space == splines[1].space
+    ([0.0, 0.5, 1.0], True)
+    """
 
     #: in the order given
     splines: tuple[Spline, ...]

@@ -34,7 +34,15 @@ S = TypeVar("S")
 
 
 class Conversion(NamedTuple, Generic[S]):
-    """The result of a conversion."""
+    """The result of a conversion.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> spline, bound, exact, how = kw.convert(kw.curve([0, 1, 2, 4]), kw.SplineSpace.bezier(3, [0, 0.5, 1]))
+    >>> spline.space.dimension, exact, how
+    (7, True, 'oslo')
+    """
 
     #: a Spline, or PolynomialPieces if these were asked for
     spline: S

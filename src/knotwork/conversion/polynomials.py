@@ -18,7 +18,16 @@ BASES = get_args(Basis)
 
 
 class PolynomialPieces(NamedTuple):
-    """Polynomial pieces over breaks; `from_pieces` makes a spline of them."""
+    """Polynomial pieces over breaks; `from_pieces` makes a spline of them.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> parabola = kw.curve([0, 0, 4], degree=2, knots=[0, 0, 0, 2, 2, 2])
+    >>> pieces = kw.convert(parabola, "monomial").spline
+    >>> pieces.coefficients.tolist(), pieces.breaks.tolist(), pieces.basis  # t²
+    ([[0.0, 0.0, 1.0]], [0.0, 2.0], 'monomial')
+    """
 
     #: shape (m, n + 1, d) for a curve of m pieces, (m1, m2, n1 + 1, n2 + 1, d) for a surface, …; no d if scalar
     coefficients: Array

@@ -43,6 +43,17 @@ class Document:
     places : tuple of Place
         For each spline its name, layer, whether it is closed, filled and stroked, its units, where in the file it
         stands and at which scale it is drawn.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import knotwork as kw
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "hill.svg"
+    >>> _ = path.write_text('<svg><!-- by hand --><path d="M 0 0 C 1 2 3 2 4 0" stroke="#321"/></svg>')
+    >>> drawing = kw.open(path)
+    >>> wider = drawing.map(lambda c: c.transform([[2, 0], [0, 1]]))
+    >>> wider.bytes()[0].decode()
+    '<svg><!-- by hand --><path d="M0 0C2 2 6 2 8 0" stroke="#321"/></svg>'
     """
 
     path: Path

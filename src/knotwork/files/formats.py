@@ -71,6 +71,14 @@ class Written:
     bound : float
         No point of the written geometry is farther than this from its spline, the rounding of floats apart; 0.0 if
         the format holds it exactly.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import knotwork as kw
+    >>> done = kw.write(pathlib.Path(tempfile.mkdtemp()) / "c.json", kw.curve([0, 1, 2, 4]))
+    >>> done.path.name, done.count, done.bound
+    ('c.json', 1, 0.0)
     """
 
     path: Path
@@ -98,6 +106,15 @@ def read(path: str | os.PathLike[str]) -> list[Spline]:
     UserWarning
         If something in the file had to be left out: repeated points of a polyline, trims of a surface, `use` of a
         shape that is not there.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import knotwork as kw
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "track.csv"
+    >>> _ = path.write_text("x,y\\n0,0\\n1,2\\n3,1\\n")
+    >>> kw.read(path)
+    [<curve of 3 points in 2-D, degree 1>]
     """
     path = Path(path)
     codec = codec_of(path)
@@ -137,6 +154,15 @@ def write(
     ------
     FileError
         If the format cannot hold these splines, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "c.json"
+    >>> kw.write(path, c).count, kw.read(path)[0] == c
+    (1, True)
     """
     if not isinstance(path, str | os.PathLike):
         raise ParameterError(f"{type(path).__name__} given as the path; expected write(path, splines)")

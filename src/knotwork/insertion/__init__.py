@@ -39,6 +39,10 @@ _LATER = {
 }
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 def __getattr__(name: str) -> Any:
     """Load the part that a name lives in."""
     if name not in _LATER:

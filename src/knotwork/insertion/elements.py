@@ -18,7 +18,15 @@ from knotwork.spline import Spline
 
 
 class Extraction(NamedTuple):
-    """The Bézier extraction operators of one parameter, an element a polynomial piece."""
+    """The Bézier extraction operators of one parameter, an element a polynomial piece.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> operators, points, breaks = kw.extraction(kw.SplineSpace(1, [0, 0, 1, 2, 2]))
+    >>> operators[1].tolist(), points[1].tolist(), breaks.tolist()
+    ([[1.0, 0.0], [0.0, 1.0]], [1, 2], [0.0, 1.0, 2.0])
+    """
 
     #: shape (m, n + 1, n + 1): basis function ``points[e, i]`` is Σ ``operators[e, i, j]`` B_j on element e, B_j the
     #: Bernstein polynomials of its interval; so Bézier point j is Σ ``operators[e, i, j]`` times control point i

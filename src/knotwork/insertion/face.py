@@ -96,6 +96,16 @@ def insertion_matrix(space: SplineSpace, refined: SplineSpace, method: MethodNam
         If `refined` is not a refinement of `space`.
     ParameterError
         If there is no such method.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> S = kw.SplineSpace.bezier(2, [0, 1])
+    >>> A = kw.insertion_matrix(S, S.with_knots(0.5))
+    >>> A.toarray().tolist()
+    [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.0, 0.0, 1.0]]
+    >>> (A @ [0, 2, 4]).tolist()
+    [0.0, 1.0, 3.0, 4.0]
     """
     for each in (space, refined):
         require_space(each, "insertion_matrix")

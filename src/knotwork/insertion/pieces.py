@@ -20,6 +20,14 @@ def clamp(spline: Spline) -> Spline:
     """Return the same spline with ends of full multiplicity in every parameter; a periodic one is opened at the seam.
 
     Control points at the ends are then points of the spline, and knots outside the domain are gone.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> ring = kw.curve([[0, 0], [4, 0], [2, 2]], degree=2, periodic=True)
+    >>> opened = kw.clamp(ring)
+    >>> opened.space.multiplicity(0), opened.points[[0, -1]].round(12).tolist()
+    (3, [[3.0, 1.0], [3.0, 1.0]])
     """
     require_spline(spline, "clamp")
     for axis, space in enumerate(spline.spaces):
@@ -37,6 +45,13 @@ def split(spline: Spline, u: Any, axis: int = 0) -> tuple[Spline, Spline]:
     ------
     ParameterError
         If u is not strictly inside the domain.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> left, right = kw.split(kw.curve([[0, 0], [2, 4], [4, 0]], degree=2), 0.5)
+    >>> left.points.tolist(), right.space.domain
+    ([[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]], (0.5, 1.0))
     """
     require_spline(spline, "split")
     axis = spline.axis(axis)
@@ -191,6 +206,13 @@ def from_bezier(nets: Any, breaks: Any, rational: bool | None = None) -> Spline:
     -----
     Where all neighbouring nets share their end points exactly, a break gets multiplicity degree, otherwise degree + 1.
     Smoother joins are not looked for.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.from_bezier([[[0, 0], [1, 2], [2, 2]], [[2, 2], [3, 2], [4, 0]]], [0, 1, 2])
+    >>> c.space.knots.tolist(), c.points[2].tolist()
+    ([0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.0], [2.0, 2.0])
     """
     rational = is_rational(nets, rational)
     P = numbers(nets, "nets", PointError).view(np.ndarray)

@@ -34,6 +34,13 @@ class Insertion:
     """A curve with a knot inserted: n + 1 + times control points over 2n + times knots, the new ones in the middle.
 
     Unpacks into `left` and `right`, the curve over the first 2n and over the last 2n of the knots.
+
+    Examples
+    --------
+    >>> from knotwork.progressive import Curve, bernstein, insert
+    >>> once = insert(Curve(bernstein(2), [0, 2, 8]), 0.5)
+    >>> once.control.tolist(), once.left.control.tolist()
+    ([0.0, 1.0, 5.0, 8.0], [0.0, 1.0, 5.0])
     """
 
     curve: Curve

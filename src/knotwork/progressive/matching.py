@@ -20,6 +20,13 @@ class Match:
     `orders` are the orders of derivative that agree there without a gap: 0 … r at an affine knot, which is a joint of
     smoothness C^r; n - r … n at a vector-valued knot, which lies at infinity: these agree everywhere, for the curves
     differ by a polynomial of degree n - r - 1. They need not meet anywhere, but go to infinity alike.
+
+    Examples
+    --------
+    >>> from knotwork.progressive import Curve, matches
+    >>> found = matches(Curve([0, 1, 2, 3], [5, 1, 4]), Curve([1, 2, 3, 4], [1, 4, 0]))
+    >>> found.orders, found.vector
+    ((0, 1), False)
     """
 
     knot: tuple[Any, Any]

@@ -104,6 +104,12 @@ def newton_dual_by_differences(nodes: Any, t: Any) -> Array:
     Returns
     -------
     ndarray, shape (*t.shape, n + 1)
+
+    Examples
+    --------
+    >>> from knotwork.progressive import newton_dual, newton_dual_by_differences
+    >>> newton_dual_by_differences([0, 1], 3).tolist() == newton_dual([0, 1]).basis(3).tolist()
+    True
     """
     x = flat_nodes(nodes)
     u, shape = affine(t, "parameters")
@@ -143,6 +149,12 @@ def evenly_spaced(curve: Curve, start: Any, step: Any, count: int) -> Array:
     Returns
     -------
     ndarray, shape (count, d), without d for a function
+
+    Examples
+    --------
+    >>> from knotwork.progressive import Curve, bernstein, evenly_spaced
+    >>> evenly_spaced(Curve(bernstein(2), [0, 0, 1]), 0, 1, 5).tolist()  # u²
+    [0.0, 1.0, 4.0, 9.0, 16.0]
     """
     n = curve.degree
     m = whole(count, "count", 0, ParameterError)

@@ -35,6 +35,14 @@ class Reduction:
         For shapes, which places on the original (first) and on the result (second) go together: the proof.
     effort : str or None
         How long was searched: "fast", "normal" or "best".
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+    >>> found = kw.remove(kw.insert(c, [0.25, 0.5]), [0.25, 0.5])
+    >>> found.removed.tolist(), found.bound < 1e-13, found.distance
+    ([0.25, 0.5], True, 'parametric')
     """
 
     spline: Spline

@@ -35,6 +35,14 @@ class ConversionBound:
     at_largest : float or None
         2^(k-3) (k-2)! d_{k-2}, if `space` is piecewise Bézier and the target keeps a knot at each break: a bound on ‖A‖
         for rows taken from the largest interval between the knots of their control point instead (Theorem 5.6.2).
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> S = kw.SplineSpace.bezier(2, [0, 1, 2])
+    >>> found = kw.stability.conversion_bound(S, kw.SplineSpace(2, [0, 0, 0, 1, 2, 2, 2]))
+    >>> found.lower <= found.norm <= found.upper
+    True
     """
 
     beta: Array

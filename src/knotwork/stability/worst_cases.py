@@ -24,6 +24,13 @@ class Worst(float):
         s / (1 - s), the ratio in which the knot divides [0, 1].
     s : float
         The knot.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> cubic = kw.stability.worst(4)
+    >>> round(cubic, 4), round(cubic.s, 4)
+    (3.6494, 0.5698)
     """
 
     x: float

@@ -44,6 +44,15 @@ class Method:
         Takes a `Size`, returns the `Counts` that the text derives.
     bound : bool
         Whether the text's count is an upper bound even if groups are complete.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> boehm = kw.insertion.METHODS["boehm"]
+    >>> boehm.family, boehm.section
+    ('boehm', '§4.5')
+    >>> boehm.run(kw.curve([0, 2, 4], degree=2), 0.5).points.tolist()
+    [0.0, 1.0, 3.0, 4.0]
     """
 
     name: str

@@ -37,6 +37,13 @@ class Matching(Frozen):
     ------
     ParameterError
         If the arrays are not finite, nondecreasing and equally long.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> a, b = kw.curve([[0, 0], [4, 0]], 1), kw.curve([[0, 3], [4, 3]], 1)
+    >>> round(float(kw.Matching([0, 1], [0, 1]).check(a, b)), 6)
+    3.0
     """
 
     __slots__ = ("closed", "first", "second")
@@ -123,7 +130,16 @@ class Matching(Frozen):
 
 
 class Distance(NamedTuple):
-    """The result of `distance_bound`."""
+    """The result of `distance_bound`.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> line = kw.curve([[0, 0], [4, 0]], degree=1)
+    >>> far = kw.distance_bound(line, line.transform(1, [0, 3]))
+    >>> round(far.bound, 6), far.proven
+    (3.0, None)
+    """
 
     #: upper bound on the Fréchet distance: a number, or one a component if the tolerance was given so
     bound: Any
