@@ -283,6 +283,16 @@ def test_plain_and_compiled_agree_on_shapes(both):
     reduce_bezier(np.stack([wild[:-1], wild[1:]], axis=1), [0, 11], 2.0)  # one that needs repair
 
 
+@battery
+def test_plain_and_compiled_agree_on_geometry(both):
+    rng = np.random.default_rng(8)
+    for degree, closed in ((3, False), (2, True)):
+        f = kw.curve(rng.standard_normal(40), degree, periodic=closed)
+        kw.zeros(f)
+        kw.zeros(f, 1)
+    kw.zeros(kw.curve([1.0, -1, 0, -1, 1], 2, [0, 0, 0, 1, 1, 2, 2, 2]))
+
+
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone
 TEMPLATES = {
     *(getattr(perspectives, name) for name in ("step", "vertex", "segment")),
@@ -305,6 +315,7 @@ def test_every_kernel_is_tried(both):
     test_plain_and_compiled_agree_on_elimination(both)
     test_plain_and_compiled_agree_on_lowering(both)
     test_plain_and_compiled_agree_on_shapes(both)
+    test_plain_and_compiled_agree_on_geometry(both)
     test_plain_and_compiled_agree_on_methods_of_insertion(both, np.float64)
     reached = set(both) | TEMPLATES
     while below := {callee for caller in reached for _, callee in caller._callees()} - reached:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         SizeError,
     )
     from knotwork.files import Document, Written, open, read, write
+    from knotwork.geometry import Zeros, zeros
     from knotwork.insertion import (
         Extraction,
         clamp,
@@ -72,6 +73,7 @@ __all__ = [
     "SplineSpace",
     "Unified",
     "Written",
+    "Zeros",
     "arithmetic",
     "blossom",
     "clamp",
@@ -109,6 +111,7 @@ __all__ = [
     "unify",
     "volume",
     "write",
+    "zeros",
 ]
 
 _PARTS = {
@@ -139,6 +142,7 @@ _PARTS = {
         "SizeError",
     ),
     "files": ("Document", "Written", "open", "read", "write"),
+    "geometry": ("Zeros", "zeros"),
     "insertion": (
         "Extraction",
         "clamp",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import comb
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,21 @@ def raised(nets: Array, n: int) -> Array:
         inner = (1 - share) * nets[:, 1:] + share * nets[:, :-1]
         nets = np.concatenate([nets[:, :1], inner, nets[:, -1:]], axis=1)
     return nets
+
+
+def product(p: Array, q: Array) -> Array:
+    """Return the Bernstein coefficients of products of polynomials, (m, p + 1) and (m, q + 1): Σ α_ij p_i q_j.
+
+    α_ij = C(p, i) C(q, j) / C(p + q, i + j), where i + j is the index in the product.
+    """
+    m, n = p.shape[1] - 1, q.shape[1] - 1
+    if m > n:
+        return product(q, p)
+    result = np.zeros((max(len(p), len(q)), m + n + 1), np.result_type(p, q))
+    for i in range(m + 1):
+        row = [comb(m, i) * comb(n, j) for j in range(n + 1)]
+        result[:, i : i + n + 1] += p[:, i, None] * (q * np.array(row, result.dtype))
+    return result / np.array([comb(m + n, k) for k in range(m + n + 1)], result.dtype)
 
 
 def halves(nets: Array, axis: int = 1) -> tuple[Array, Array]:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import comb
-
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.geometry.bezier import halves, raised
+from knotwork.geometry.bezier import halves, product, raised
 
 #: halvings of one piece, and pieces in one step, at most
 HALVINGS = 40
@@ -64,12 +62,7 @@ def distance(nets: Array, near: Array) -> Array:
 
     The numerator A - g·w has Bézier points of degree n + 3; the largest of them, over the smallest weight, is it.
     """
-    n = nets.shape[1] - 1
-    w = nets[..., 2]
-    product = np.zeros((len(nets), n + 4, 2))
-    for i, binomial in enumerate((1, 3, 3, 1)):
-        for j in range(n + 1):
-            product[:, i + j] += binomial * comb(n, j) / comb(n + 3, i + j) * near[:, i] * w[:, j, None]
-    difference = raised(nets[..., :2], n + 3) - product
+    n, w = nets.shape[1] - 1, nets[..., 2]
+    difference = raised(nets[..., :2], n + 3) - np.stack([product(near[..., k], w) for k in (0, 1)], axis=-1)
     size: Array = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1) / w.min(axis=1)
     return size

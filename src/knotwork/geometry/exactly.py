@@ -69,3 +69,8 @@ def above(x: Any) -> float:
     except OverflowError:
         return math.copysign(math.inf, x) if x > 0 else -sys.float_info.max
     return near if near >= x else math.nextafter(near, math.inf)
+
+
+def below(x: Any) -> float:
+    """Return the largest float that is no larger than a Fraction."""
+    return -above(-x)
