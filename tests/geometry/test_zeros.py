@@ -173,6 +173,8 @@ def test_the_seam_of_a_period_counts_once():
     f = kw.Spline(kw.SplineSpace(1, [0, 1, 2], periodic=True), [1.0, 0.0])  # 0 at 0 and 2, which are one place
     found = kw.zeros(f)
     assert found.low.tolist() == [0]
+    line = kw.Spline(kw.SplineSpace(1, [0, 1, 2, 3], periodic=True), [0.0, 1.0, -1.0])
+    assert kw.zeros(line).change.tolist() == [1, -1]
     wave = kw.curve(np.cos(np.arange(12) * np.pi / 3), 3, periodic=True)
     assert len(kw.zeros(wave).low) == 4
 

@@ -33,7 +33,8 @@ def product(p: Array, q: Array) -> Array:
     for i in range(m + 1):
         row = [comb(m, i) * comb(n, j) for j in range(n + 1)]
         result[:, i : i + n + 1] += p[:, i, None] * (q * np.array(row, result.dtype))
-    return result / np.array([comb(m + n, k) for k in range(m + n + 1)], result.dtype)
+    result /= np.array([comb(m + n, k) for k in range(m + n + 1)], result.dtype)
+    return result
 
 
 def halves(nets: Array, axis: int = 1) -> tuple[Array, Array]:

@@ -112,10 +112,10 @@ def zeros(f: Spline, derivative: int = 0) -> Zeros:
         piece = Pieces.exactly(exact_net(numerator, [start])[None, :, 0])
         for _ in range(order):
             piece = piece.slope()
-        return piece.c[0]
+        c: Array = piece.c[0]
+        return c
 
-    found = _located(_known(numerator, order), exact, f.space.breaks)
-    return _around(found, f.space.domain) if f.space.periodic else found
+    return _located(_known(numerator, order), exact, f.space.breaks, f.space.periodic)
 
 
 def zeros_of_pieces(pieces: Pieces, breaks: Array, exact: Exact, periodic: bool = False) -> Zeros:
@@ -124,8 +124,7 @@ def zeros_of_pieces(pieces: Pieces, breaks: Array, exact: Exact, periodic: bool 
     t = np.concatenate([breaks[:1], np.repeat(breaks[1:-1], n + 1), breaks[-1:]])
     t = np.concatenate([np.repeat(t[:1], n), t, np.repeat(t[-1:], n)])
     f = Function(t, pieces.c.reshape(-1), np.array(pieces.e).reshape(-1), extent(n))
-    found = _located(f, exact, breaks)
-    return _around(found, (breaks[0], breaks[-1])) if periodic else found
+    return _located(f, exact, breaks, periodic)
 
 
 def _checked(f: Spline) -> Spline:
@@ -157,10 +156,10 @@ def _known(f: Spline, order: int) -> Function:
         space, c = of_coefficients(space, c, 0)
         if not exact:
             e = e * (1 + 8 * UNIT) + 4 * UNIT * np.abs(c)
-    f = Function(space.knots, c[:, 0], e[:, 0], extent(space.degree))
+    opened = Function(space.knots, c[:, 0], e[:, 0], extent(space.degree))
     a, b = space.domain
     missing = [space.order - space.multiplicity(x) for x in (a, b)]
-    return f if exact or not any(missing) else _with_knots(f, np.repeat([a, b], missing), clamp=True)
+    return opened if exact or not any(missing) else _with_knots(opened, np.repeat([a, b], missing), clamp=True)
 
 
 def _with_knots(f: Function, new: Array, clamp: bool = False) -> Function:
@@ -178,8 +177,8 @@ def _with_knots(f: Function, new: Array, clamp: bool = False) -> Function:
     return Function(t, np.ascontiguousarray(out[0, :, 0]), np.ascontiguousarray(out[0, :, 1]), f.K)
 
 
-def _located(f: Function, exact: Exact, breaks: Array) -> Zeros:
-    """Return all zeros of a function."""
+def _located(f: Function, exact: Exact, breaks: Array, periodic: bool) -> Zeros:
+    """Return all zeros of a function; the breaks are those of its exact pieces."""
     floats, n = f.c.dtype != object, len(f.K)
     for turn in range(ROUNDS + 1):
         N = len(f.c)
@@ -216,6 +215,7 @@ def _located(f: Function, exact: Exact, breaks: Array) -> Zeros:
     found, intervals = _decided(f.t, np.flatnonzero(still_open & (f.t[:N] < f.t[1 : N + 1])), exact, breaks)
     every = [_Found(a, b, 1, -c, c) for (a, b), c in zip(ends.tolist(), rise.tolist(), strict=True)] + found
     every.sort(key=lambda z: z.low)
+    every = _around(every, (breaks[0], breaks[-1])) if periodic else every
     low, high, multiplicity, change = (
         [z.low for z in every], [z.high for z in every], [z.multiplicity for z in every],
         [(z.after - z.before) // 2 if z.after * z.before else 0 for z in every],
@@ -272,21 +272,22 @@ def _in_piece(c: list[Fraction], a: Any, b: Any, floats: bool) -> list[_Found]:
         if root.multiplicity % 2 and before:
             sign = -sign
         after = 0 if root.low == root.high == 1 else sign
-        ends = (below(low), above(high)) if floats else (low, high)
-        found.append(_Found(*ends, root.multiplicity, before, after))
+        if floats:
+            low, high = below(low), above(high)
+        found.append(_Found(low, high, root.multiplicity, before, after))
     return found
 
 
-def _around(found: Zeros, domain: tuple[Any, Any]) -> Zeros:
+def _around(found: list[_Found], domain: tuple[Any, Any]) -> list[_Found]:
     """Return the zeros over a period: one at its end is one at its start."""
-    low, high, multiplicity, change, intervals = found
-    if not len(low) or not low[-1] == high[-1] == domain[1]:
+    a, b = domain
+    if not found or not found[-1].low == found[-1].high == b:
         return found
-    if low[0] == high[0] == domain[0]:
-        multiplicity[0] = min(multiplicity[0], multiplicity[-1])
-        return Zeros(low[:-1], high[:-1], multiplicity[:-1], change[:-1], intervals)
-    low[-1] = high[-1] = domain[0]
-    return Zeros(*(np.roll(x, 1) for x in found[:4]), intervals)
+    last, rest = found[-1]._replace(low=a, high=a), found[:-1]
+    if rest and rest[0].low == rest[0].high == a:
+        both = min(last.multiplicity, rest[0].multiplicity)
+        last, rest = last._replace(multiplicity=both, after=rest[0].after), rest[1:]
+    return [last, *rest]
 
 
 def _of_quotient(f: Spline, order: int) -> Zeros:
@@ -301,6 +302,7 @@ def _of_quotient(f: Spline, order: int) -> Zeros:
 
     def exact(start: Any) -> Array:
         net = exact_net(f, [start])
-        return numerator(Pieces.exactly(net[None, :, 0]), Pieces.exactly(net[None, :, 1])).c[0]
+        c: Array = numerator(Pieces.exactly(net[None, :, 0]), Pieces.exactly(net[None, :, 1])).c[0]
+        return c
 
     return zeros_of_pieces(numerator(A, w), breaks, exact, f.space.periodic)
