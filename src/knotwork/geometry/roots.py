@@ -265,6 +265,8 @@ def _in_piece(c: list[Fraction], a: Any, b: Any, floats: bool) -> list[_Found]:
     """Return the zeros of a polynomial over [a, b] that is not zero."""
     start, length = Fraction(a), Fraction(b) - Fraction(a)
     least = Fraction(max(abs(a), abs(b))) / (length * 2**55)
+    low: Any
+    high: Any
     found, sign = [], next(1 if x > 0 else -1 for x in c if x)
     for root in roots(c, min(max(least, Fraction(1, 2**80)), Fraction(1))):
         low, high = (start + length * x for x in (root.low, root.high))
