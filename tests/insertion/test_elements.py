@@ -6,6 +6,7 @@ import math
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from hypothesis import given
 
 import knotwork as kw
@@ -45,6 +46,25 @@ def test_surfaces_by_axis():
     u, v = kw.extraction(s)
     nets = np.einsum("eij,fkl,eifk->efjl", u.operators, v.operators, s.points[u.points[:, :, None, None], v.points])
     np.testing.assert_allclose(nets, kw.to_bezier(s)[0], atol=1e-13)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4])
+def test_they_are_those_of_pantr(degree):
+    """Clamped, not clamped, with multiple knots, periodic: its knots of a period are wrapped by the degree."""
+    pantr = pytest.importorskip("pantr.bspline")
+    ends = [0] * (degree + 1), [1] * (degree + 1)
+    spaces = [
+        kw.SplineSpace.clamped(degree, degree + 5),
+        kw.SplineSpace.uniform(degree, degree + 5),
+        kw.SplineSpace(degree, [*ends[0], 0.25, *[0.5] * degree, *ends[1]]),
+        kw.SplineSpace.uniform(degree, 8, periodic=True),
+    ]
+    for space in spaces:
+        t = space.knots
+        if space.periodic:
+            t = np.concatenate([t[-1 - degree : -1] - 1, t, t[1 : degree + 1] + 1])
+        theirs = pantr.BsplineSpace1D(t, degree, periodic=space.periodic).tabulate_Bezier_extraction_operators()
+        np.testing.assert_allclose(kw.extraction(space).operators, theirs, atol=1e-14)
 
 
 def test_the_printed_example():

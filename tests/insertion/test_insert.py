@@ -273,3 +273,33 @@ def test_a_long_curve_takes_little_more_than_its_output(degree):
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert peak <= refined.coefficients.nbytes + 3 * refined.space.knots.nbytes + 300_000
+
+
+@pytest.mark.parametrize("degree", range(1, 6))
+@pytest.mark.parametrize("unclamped", [False, True])
+def test_one_knot_is_that_of_scipy(degree, unclamped):
+    """`BSpline.insert_knot`, which came later than `scipy.interpolate.insert`, at a knot and elsewhere, once and twice."""
+    interpolate = pytest.importorskip("scipy.interpolate")
+    rng = np.random.default_rng(degree)
+    space = kw.SplineSpace.uniform(degree, 12) if unclamped else kw.SplineSpace.clamped(degree, 12)
+    space = kw.SplineSpace(degree, space.knots + 0.01 * np.sin(3 * space.knots))
+    c = kw.Spline(space, rng.standard_normal((12, 2)))
+    theirs = interpolate.BSpline(space.knots, c.points, degree)
+    for x in (space.knots[degree + 2], 0.37, 0.5, 0.001 + space.domain[0]):
+        for times in range(1, min(degree, 2) + 1 - space.multiplicity(x)):
+            wanted, found = theirs.insert_knot(x, times), kw.insert(c, [x] * times)
+            np.testing.assert_array_equal(found.space.knots, wanted.t)
+            np.testing.assert_allclose(found.points, wanted.c[: len(found.points)], atol=1e-13)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 5])
+def test_one_knot_of_a_period_is_that_of_scipy(degree):
+    interpolate = pytest.importorskip("scipy.interpolate")
+    c = kw.curve(np.random.default_rng(degree).standard_normal((14, 2)), degree, periodic=True)
+    t = c.space.knots
+    wrapped = np.concatenate([t[-1 - degree : -1] - 1, t, t[1 : degree + 1] + 1])
+    points = np.concatenate([c.points[-degree:], c.points])
+    theirs = interpolate.BSpline(wrapped, points, degree, extrapolate="periodic").insert_knot(0.55)
+    found = kw.insert(c, 0.55)
+    np.testing.assert_allclose(theirs.t[degree : len(theirs.t) - degree], found.space.knots, atol=1e-15)
+    np.testing.assert_allclose(theirs.c[degree : len(theirs.t) - degree - 1], found.points, atol=1e-13)
