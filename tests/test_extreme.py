@@ -136,3 +136,49 @@ def test_periodic_parameters_far_away():
     assert 1 <= wide(5e306) <= 4
     with pytest.raises(kw.errors.KnotError, match="overflow"):  # its knots go on beyond what floats hold
         kw.curve([1.0, 2.0, 4.0], 3, [0.0, 1e307, 5e307, 1e308], periodic=True)
+
+
+# ---- exact numbers beyond float64 -----------------------------------------------------------------------------------
+
+
+def _beyond():
+    """Return exact lines from 0 to 1 over a domain too long and one too short for float64."""
+    ends = [Fraction(10**400), Fraction(1, 10**400)]
+    return [kw.curve([[Fraction(0), Fraction(0)], [Fraction(1), Fraction(1)]], 1, [0, 0, b, b]) for b in ends]
+
+
+@pytest.mark.parametrize("line", _beyond(), ids=["long", "short"])
+def test_exact_knots_that_float64_cannot_hold(line):
+    """What is exact stays exact: pieces are chosen by β, which does not depend on where the domain is."""
+    _, b = line.space.domain
+    third = b / 3
+    finer = kw.insert(line, third)
+    assert kw.join(*kw.split(line, third)).spline == line
+    square = line * line
+    assert square(third).tolist() == [Fraction(1, 9), Fraction(1, 9)]
+    assert (line + square)(third).tolist() == [Fraction(4, 9), Fraction(4, 9)]
+    assert kw.convert(finer, line.space, how="oslo").spline == line
+    assert kw.lower(kw.elevate(line)).spline == line
+    assert kw.unify([line, finer]).splines[0] == finer
+    assert kw.close(kw.curve([Fraction(0), Fraction(1), Fraction(0)], 1, [0, 0, third, b, b])).bound == 0
+    assert kw.stability.conversion_bound(finer.space, line.space).norm >= 1
+
+
+def test_what_needs_floats_says_so():
+    far = [[Fraction(0), Fraction(0)], [Fraction(10**400), Fraction(1)], [Fraction(1), Fraction(1)]]
+    c = kw.curve(far, 1)
+    assert c._repr_svg_() is None
+    assert (
+        kw.curve(np.array([Fraction(0), Fraction(1), Fraction(0)]), 1, [0, 0, Fraction(1, 10**400), 1, 1])._repr_svg_()
+        is None
+    )
+    for call in (
+        lambda: kw.interpolate(far, degree=1),
+        lambda: kw.fit(np.array(far), 0.1),
+        lambda: kw.reduce(_beyond()[0], 0.1, distance="geometric"),
+        lambda: kw.stability.kappa(_beyond()[0].space),
+        lambda: kw.convert(_beyond()[0], _beyond()[0].space.with_knots(5), how="interpolation"),
+    ):
+        with pytest.raises(kw.KnotworkError, match="float64 cannot hold"):
+            call()
+    assert kw.interpolate(far, [0, 1, 2], degree=1) == kw.curve(far, 1, [0, 0, 1, 2, 2])

@@ -278,7 +278,7 @@ def test_a_long_curve_takes_little_more_than_its_output(degree):
 @pytest.mark.parametrize("degree", range(1, 6))
 @pytest.mark.parametrize("unclamped", [False, True])
 def test_one_knot_is_that_of_scipy(degree, unclamped):
-    """`BSpline.insert_knot`, which came later than `scipy.interpolate.insert`, at a knot and elsewhere, once and twice."""
+    """`BSpline.insert_knot` at a knot and elsewhere, once and twice."""
     interpolate = pytest.importorskip("scipy.interpolate")
     rng = np.random.default_rng(degree)
     space = kw.SplineSpace.uniform(degree, 12) if unclamped else kw.SplineSpace.clamped(degree, 12)

@@ -6,7 +6,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, numbers, require_finite
+from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, in_floats, numbers, require_finite
 from knotwork.errors import KnotError, ParameterError, PointError, nearest_name
 from knotwork.evaluation import design_matrix
 from knotwork.knots import sorted_knots
@@ -104,7 +104,7 @@ def _parameters(P: Array, given: Any, periodic: bool) -> Array:
     if way == "uniform" or P.ndim == 1:
         return np.arange(count) / (count - 1)
     Q = np.concatenate([P, P[:1]]) if periodic else P
-    steps = np.abs((Q[1:] - Q[:-1]).astype(np.complex128 if P.dtype.kind == "c" else np.float64))
+    steps = np.abs(in_floats(Q[1:] - Q[:-1], "distances of points", PointError)).astype(np.float64)
     size = steps.max(axis=1)
     if not size.all():
         i = int(np.argmin(size))

@@ -7,7 +7,7 @@ they amplify: the piece is chosen for which the bound β on the weights is small
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -185,8 +185,17 @@ def least_pieces(space: SplineSpace, target: SplineSpace) -> Pieces:
     while U[last] == U[last + 1]:
         last -= 1
     mu, size = np.empty(target.dimension, np.intp), np.empty(target.dimension)
-    choose(U.astype(np.float64), first, last, t.astype(np.float64), at, n, mu, size)
+    u, v = _in_floats(U, t, *space.domain)
+    choose(u, first, last, v, at, n, mu, size)
     return Pieces(mu, size)
+
+
+def _in_floats(U: Array, t: Array, a: Any, b: Any) -> tuple[Array, Array]:
+    """Return knots in floats; if those cannot hold them, as parts of the domain [a, b]: β is the same for them."""
+    size = max(abs(U[0]), abs(U[-1]), abs(t[0]), abs(t[-1]))
+    if U.dtype == t.dtype == object and not 2.0**-500 < b - a <= 2 * size < 2.0**500:
+        U, t = (U - a) / (b - a), (t - a) / (b - a)
+    return U.astype(np.float64), t.astype(np.float64)
 
 
 def conversion_matrix(space: SplineSpace, target: SplineSpace, pieces: Pieces | None = None) -> Banded:

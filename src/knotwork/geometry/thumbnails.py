@@ -7,6 +7,7 @@ from html import escape
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, all_finite
+from knotwork.errors import KnotworkError
 from knotwork.insertion.pieces import clamp, to_bezier
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -28,7 +29,10 @@ def thumbnail(spline: Spline) -> str | None:
     if len(spline.spaces) != 1 or spline.dim > 3:
         return None
     with np.errstate(all="ignore"):
-        flat = _in_the_plane(spline)
+        try:
+            flat = _in_the_plane(spline)
+        except (OverflowError, KnotworkError):  # exact numbers that floats cannot hold or tell apart
+            return None
         lines, polygon = _lines(flat), flat.points
         low = np.min([line.min(axis=0) for line in [*lines, polygon]], axis=0)
         size = np.max([line.max(axis=0) for line in [*lines, polygon]], axis=0) - low

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, real_array
+from knotwork.arithmetic.arrays import Array, in_floats, real_array
 from knotwork.conversion import elevate
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.lengths import increasing
@@ -70,7 +70,7 @@ def fit(
     >>> wave.bound <= 1e-3, len(wave.spline.points) < 20
     (True, True)
     """
-    P = real_array(points, "points", PointError).astype(np.float64)
+    P = in_floats(real_array(points, "points", PointError), "points", PointError)
     if P.ndim != 2 or not P.shape[1]:
         raise PointError(f"points of shape {P.shape} given; expected (m, d)")
     if not np.isfinite(P).all():

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.conversion import elevate
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import joined
@@ -163,7 +163,7 @@ def _at_even_pace(curve: Spline, pieces: Array, closed: bool, found: Reduction) 
     A polyline runs as its cubics do, by length; between smooth pieces, lengths of its own will do.
     """
     matching = found.matching
-    a, b = (float(x) for x in curve.space.domain)
+    a, b = in_floats(np.array(curve.space.domain), "domain", ParameterError).tolist()
     periodic = closed and curve.space.periodic
     if pieces.shape[1] == 2 and isinstance(matching, Matching) and len(matching.first) > 2:
         places, there = matching.first, matching.second
