@@ -75,14 +75,28 @@ def test_a_shape_stays_a_shape(drawing: Path) -> None:
         document.replace(4, document.splines[2])
 
 
-def test_tables_are_written_as_they_were_or_with_their_titles(tmp_path: Path) -> None:
+def test_points_of_a_table_that_stay_keep_their_lines(tmp_path: Path) -> None:
     path = tmp_path / "wing.dat"
-    path.write_text("NACA 0012\n x;  y\n0,5; 1\n1,5;2\n2,5; 7,25\n")
+    before = b"\xef\xbb\xbfT\xfcte 0012\r\n x;  y\r\n0,5; 1\r\n1,5;2\r\n# tip\r\n2,5; 7,25 \r\n\r\n1; 2\r\n3;  5"
+    path.write_bytes(before)
     table = kw.open(path)
     table.write(tmp_path / "b.dat")
-    assert (tmp_path / "b.dat").read_bytes() == path.read_bytes()
-    table.replace(0, kw.curve([[0.5, 1], [2.5, 7.25]], 1)).write(tmp_path / "b.dat")
-    assert (tmp_path / "b.dat").read_text() == "NACA 0012\n x;  y\n0,5;1,0\n2,5;7,25\n"
+    assert (tmp_path / "b.dat").read_bytes() == before
+    kept = table.replace(0, kw.curve([[0.5, 1], [2.5, 7.25]], 1))
+    assert kept.bytes()[0] == before.replace(b"1,5;2\r\n# tip\r\n", b"")
+    moved = table.replace(1, kw.curve([[1, 2.5], [3, 5]], 1))
+    assert moved.bytes()[0] == before.replace(b"1; 2\r\n", b"1,0;2,5\r\n")
+
+
+def test_what_else_stands_in_a_row_stays_with_its_point(tmp_path: Path) -> None:
+    path = tmp_path / "track.csv"
+    path.write_text("time,x,y\n10:00,0,0\n10:05,1,0.5\n10:20,2,0\n")
+    with pytest.warns(UserWarning, match="column 'time' left out"):
+        table = kw.open(path)
+    kept = table.replace(0, kw.curve([[0, 0], [2, 0]], 1)).bytes()[0]
+    assert kept == b"time,x,y\n10:00,0,0\n10:20,2,0\n"
+    with pytest.raises(FileError, match="some columns are no coordinates"):
+        table.replace(0, kw.curve([[0, 0], [2, 1]], 1)).bytes()
 
 
 COORDINATE = st.one_of(st.integers(-999, 999).map(float), st.floats(-1e4, 1e4))

@@ -1,5 +1,6 @@
 """Drawings made lighter: few segments, proven, and all else byte for byte."""
 
+import gzip
 import re
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 import knotwork as kw
-from knotwork.errors import ParameterError
+from knotwork.errors import FileError, ParameterError
 from knotwork.files.lighter import lighter
 from knotwork.geometry.sampling import even_steps
 
@@ -56,3 +57,65 @@ def test_an_icon_of_arcs_gets_no_longer(tmp_path: Path) -> None:
 def test_bad_input_is_named(tolerance: float, effort: str) -> None:
     with pytest.raises(ParameterError, match="given; expected"):
         lighter(kw.open(ROSE), tolerance, effort=effort)
+
+
+def test_corners_of_polygons_stand_in_their_place(tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    round_ = " ".join(f"{50 + 40 * np.cos(x):.6f},{50 + 40 * np.sin(x):.6f}" for x in np.linspace(0, 6.2, 300))
+    text = f'<svg viewBox="0 0 100 100"><g transform="scale(2)"><polygon fill="red" points="{round_}"/></g>{{}}</svg>'
+    path.write_text(text.format('<polyline points="0,0 1,0.001 2,0 2,2"/>'))
+    document = kw.open(path)
+    assert [place.straight for place in document.places] == [True, True]
+    found = lighter(document, 0.5)
+    data, rounded = found.document.bytes()
+    assert found.bound + rounded <= 0.5
+    assert re.sub(rb'points="[^"]*"', b"", data) == re.sub(rb'points="[^"]*"', b"", path.read_bytes())
+    assert re.search(rb'<polyline points="0 0 [0-9.]+ [0-9.]+ 2 2"/>', data)
+    assert found.segments[1] < 40
+    (tmp_path / "b.svg").write_bytes(data)
+    before, after = kw.read(path)[0], kw.read(tmp_path / "b.svg")[0]
+    assert after.space.periodic
+    P, Q = dense(before), dense(after)
+    assert max(cKDTree(P).query(Q)[0].max(), cKDTree(Q).query(P)[0].max()) <= 0.5 + 0.3  # up to the spacing of samples
+
+
+def test_a_packed_drawing_comes_back_packed(tmp_path: Path) -> None:
+    path = tmp_path / "rose.svgz"
+    path.write_bytes(gzip.compress(ROSE.read_bytes()))
+    document = kw.open(path)
+    document.write(tmp_path / "same.svgz")
+    assert (tmp_path / "same.svgz").read_bytes() == path.read_bytes()
+    lighter(document, 5.0).document.write(tmp_path / "small.svgz")
+    data = (tmp_path / "small.svgz").read_bytes()
+    assert data[:2] == b"\x1f\x8b"
+    assert without_data(gzip.decompress(data)) == without_data(ROSE.read_bytes())
+    document.write(tmp_path / "plain.svg")
+    assert (tmp_path / "plain.svg").read_bytes() == ROSE.read_bytes()
+
+
+def test_packed_files_that_are_damaged_or_bombs(tmp_path: Path) -> None:
+    path = tmp_path / "a.svgz"
+    packed = gzip.compress(ROSE.read_bytes())
+    for data, message in (
+        (packed[:999], "breaks off"),
+        (packed[:99] + b"no" + packed[101:], "damaged"),
+        (gzip.compress(bytes(1 << 29), 1), "holds more than 268435456 bytes"),
+    ):
+        path.write_bytes(data)
+        with pytest.raises(FileError, match=message):
+            kw.open(path)
+
+
+SPRITE = """<svg xmlns="http://www.w3.org/2000/svg"><symbol id="a" viewBox="0 0 9 9"><path d="M1 1h5v6z"/></symbol>
+<g id="b" transform="scale(2)"><path id="c" d="M2 2h3"/></g><use href="#c" x="9" transform="scale(3)"/></svg>"""
+
+
+def test_one_element_of_a_sprite(tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    path.write_text(SPRITE)
+    assert [c.bounds.tolist() for c in kw.read(path, name="a")] == [[[1, 1], [6, 7]]]
+    assert [c.bounds.tolist() for c in kw.read(path, name="b")] == [[[4, 4], [10, 4]]]
+    (place,) = kw.open(path, name="c").places
+    assert place.scale == 3  # as it is drawn at its largest
+    with pytest.raises(ParameterError, match="no element has the id 'd'"):
+        kw.open(path, name="d")

@@ -1,6 +1,7 @@
 """CSV: the points are what they were, and the parameter is the length along them."""
 
 import itertools
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import knotwork as kw
-from knotwork.errors import FileError
+from knotwork.errors import FileError, ParameterError
 from knotwork.files import read, write
 from knotwork.files.tables import decode, encode
 from work import calls_within
@@ -42,6 +43,91 @@ def test_layouts_of_the_same_polyline(text: str) -> None:
     (c,) = parsed(text)
     assert c.points.tolist() == [[0, 0], [3, 4], [3, 10]]
     assert c.space == kw.SplineSpace(1, [0, 0, 5, 11, 11])  # chords of length 5 and 6
+
+
+AIRFOIL = "NACA 2412\n 1.0 0.0013\n 0.5 0.0521\n 0.0 0.0\n 0.5 -0.0211\n 1.0 -0.0013\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        (AIRFOIL, [[1.0, 0.0013], [0.5, 0.0521], [0.0, 0.0], [0.5, -0.0211], [1.0, -0.0013]]),
+        ("x\ty\t\n1\t2\t\n3\t4\t\n", [[1, 2], [3, 4]]),
+        ('"x","y"\n"1.5","2"\n"3","4"\n', [[1.5, 2], [3, 4]]),
+        ("x;y\n1,5;2,5\n3,5;4\n", [[1.5, 2.5], [3.5, 4]]),
+        ("# a\n# b\nname\nx,y\n1,2\n3,4\n5,6\n", [[1, 2], [3, 4], [5, 6]]),
+        ("id,x,y\n1,10,20\n2,30,40\n3,50,10\n", [[10, 20], [30, 40], [50, 10]]),
+        ("lat,lon,ele\n47,8,400\n48,9,410\n", [[47, 8, 400], [48, 9, 410]]),
+        ("N+3 T100\n -2.0 3.0 -2.5 3.5\n 1.0 0.5e-3\n 0.5 0.1\n 0.0 0.0\n", [[1, 5e-4], [0.5, 0.1], [0, 0]]),
+        ("1.0;2,5\n", None),
+    ],
+)
+def test_tables_as_people_have_them(text: str, points: list[list[float]] | None) -> None:
+    if points is None:
+        with pytest.raises(FileError):
+            decode(text.encode(), print)
+        return
+    (c,) = decode(text.encode(), print)
+    assert c.points.tolist() == points
+
+
+def test_what_is_left_out_is_said() -> None:
+    told: list[str] = []
+    decode(b"id,x,y\n1,10,20\n2,30,40\n", told.append)
+    decode(b"0 0\n1 1\nFrom the book, page 86\n12 - thickness\n0.1 0.2->0.3\n", told.append)
+    assert told == [
+        "column 'id' left out: no coordinate by name or content",
+        "line 3: 3 line(s) of text below the points are left out",
+    ]
+
+
+STROKES = "t,x,y,pressure\n0,0,0,.5\n1,1,1,.6\n2,9,9,0\n3,5,5,.4\n4,6,5,.4\n5,9,9,0\n6,9,9,0\n"
+
+
+def test_columns_are_chosen_and_strokes_parted_at_pen_ups(tmp_path: Path) -> None:
+    path = tmp_path / "pen.csv"
+    path.write_text(STROKES)
+    for columns in (["x", "y"], [2, "3"], None):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            a, b = read(path, columns=columns, split_at="pressure=0")
+        assert a.points.tolist() == [[0, 0], [1, 1]]
+        assert b.points.tolist() == [[5, 5], [6, 5]]
+    (c,) = read(path, columns=["y", "x", "t"])
+    assert c.dim == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"columns": ["x", "z"]}, r"column 'z' asked for; the table has t, x, y, pressure"),
+        ({"columns": [9]}, "column 9 asked for; the table has columns 1 to 4"),
+        ({"split_at": "pressure"}, "expected a column and a value"),
+        ({"split_at": "pressure=up"}, "expected a number after ="),
+        ({"colums": ["x", "y"]}, "a table of points has no option 'colums'"),
+    ],
+)
+def test_options_that_make_no_sense(tmp_path: Path, options: dict[str, Any], message: str) -> None:
+    path = tmp_path / "pen.csv"
+    path.write_text(STROKES)
+    with pytest.raises(ParameterError, match=message):
+        read(path, **options)
+
+
+def test_lines_are_skipped_and_laps_are_closed_or_open_as_asked(tmp_path: Path) -> None:
+    path = tmp_path / "a.lap"  # told by its content
+    path.write_text("4 5\n0 0\n4 0\n4 3\n0 0\n")
+    assert read(path)[0].points.tolist() == [[4, 5], [0, 0], [4, 0], [4, 3], [0, 0]]
+    assert read(path, skip=1)[0].space.periodic
+    opened = read(path, skip=1, closed=False)[0]
+    assert not opened.space.periodic
+    assert opened.points.tolist() == [[0, 0], [4, 0], [4, 3], [0, 0]]
+    assert read(path, closed=True)[0].space.periodic
+
+
+def test_a_table_in_two_bytes_a_letter() -> None:
+    (c,) = decode("x\ty\r\n1\t2\r\n3\t4\r\n".encode("utf-16"), no_remark)
+    assert c.points.tolist() == [[1, 2], [3, 4]]
 
 
 def test_polylines_are_separated_by_blank_lines() -> None:

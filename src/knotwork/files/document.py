@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import os
 import warnings
 from collections.abc import Callable, Mapping
@@ -10,9 +11,9 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from knotwork.errors import FileError, KnotworkError, ParameterError
-from knotwork.files.formats import Written, codec_of, write
+from knotwork.files.formats import Format, Written, fetched, format_of, require_options, write
 from knotwork.files.places import Place
-from knotwork.files.storage import fetch
+from knotwork.files.storage import packed, unpacked
 from knotwork.files.storage import replace as replace_file
 from knotwork.spline import Spline
 
@@ -59,7 +60,11 @@ class Document:
     path: Path
     splines: tuple[Spline, ...]
     places: tuple[Place, ...]
+    #: what kind of file it is
+    format: Format = field(repr=False)
     _content: Any = field(repr=False)
+    #: the bytes of the file
+    _given: builtins.bytes = field(repr=False)
     #: how far rounding may move the points of a spline that is written, in its own coordinates
     _accuracy: dict[int, float] = field(default_factory=dict, repr=False)
 
@@ -94,7 +99,7 @@ class Document:
                 raise ParameterError(f"{type(spline).__name__} given for spline {i}; expected a Spline")
         return replace(self, splines=tuple(changed.get(i, spline) for i, spline in enumerate(self.splines)))
 
-    def bytes(self, *, even_if_longer: bool = False) -> tuple[bytes, float]:
+    def bytes(self, *, even_if_longer: bool = False) -> tuple[builtins.bytes, float]:
         """Return the bytes of the document, and how far rounding moved a point at most, as it is drawn."""
         before = self._content.splines
         changed = {i: s for i, s in enumerate(self.splines) if s is not before[i]}
@@ -123,14 +128,20 @@ class Document:
             If the format cannot hold a spline, or the file cannot be written.
         """
         path = Path(path)
-        if path.suffix.lower() != self.path.suffix.lower():
+        if path.suffix.lower() != self.path.suffix.lower() and format_of(path) is not self.format:
             return write(path, list(self.splines))
+        data, bound = self.packed(path, even_if_longer=even_if_longer)
+        replace_file(path, data)
+        return Written(path, len(self.splines), bound)
+
+    def packed(self, path: Path, *, even_if_longer: bool = False) -> tuple[builtins.bytes, float]:
+        """Return what `write` would write to a file of the same format, packed if its suffix says so."""
         try:
             data, bound = self.bytes(even_if_longer=even_if_longer)
         except KnotworkError as exc:
             raise FileError(f"{path}: {exc}") from exc
-        replace_file(path, data)
-        return Written(path, len(self.splines), bound)
+        same = data == unpacked(self._given) and path.suffix.lower() == self.path.suffix.lower()
+        return self._given if same else packed(data, path), bound
 
 
 @dataclass(frozen=True)
@@ -152,13 +163,17 @@ class Whole:
         return data, bound
 
 
-def open_document(path: str | os.PathLike[str]) -> Document:
+def open_document(path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> Document:
     """Open a file as a document, which is written back as it was but for the splines that are replaced.
 
     Parameters
     ----------
     path : path-like
         The suffix tells the format; ``knotwork formats`` lists them.
+    format : str, optional
+        A suffix that tells the format instead.
+    **options
+        What the format can be asked for, as for `read`.
 
     Raises
     ------
@@ -183,21 +198,29 @@ def open_document(path: str | os.PathLike[str]) -> Document:
     True
     """
     path = Path(path)
-    codec = codec_of(path)
-    data = fetch(path)
+    return document_of(fetched(path, format), path, format, options)
+
+
+def document_of(data: bytes, path: Path, format: str | None, options: Mapping[str, Any]) -> Document:
+    """Return the document in the bytes of a file."""
+    found = format_of(path, format, data)
+    require_options(found, path, options)
+    codec = found.codec
     remarks: list[str] = []
     try:
+        inside = unpacked(data)
         if hasattr(codec, "opened"):
-            content = codec.opened(data, remarks.append)
+            content = codec.opened(inside, remarks.append, **options)
         else:
-            splines = tuple(codec.decode(data, remarks.append))
+            splines = tuple(codec.decode(inside, remarks.append, **options))
             places = tuple(_place(spline, i) for i, spline in enumerate(splines))
-            content = Whole(data, codec, splines, places)
+            content = Whole(inside, codec, splines, places)
     except KnotworkError as exc:
-        raise FileError(f"{path}: {exc}") from exc
+        asked = options and isinstance(exc, ParameterError)
+        raise (ParameterError if asked else FileError)(f"{path}: {exc}") from exc
     for remark in remarks:
-        warnings.warn(f"{path}: {remark}", UserWarning, stacklevel=2)
-    return Document(path, content.splines, content.places, content)
+        warnings.warn(f"{path}: {remark}", UserWarning, stacklevel=3)
+    return Document(path, content.splines, content.places, found, content, data)
 
 
 def _place(spline: Spline, index: int) -> Place:

@@ -6,14 +6,14 @@ import importlib
 import math
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from knotwork.errors import FileError, KnotworkError, ParameterError
-from knotwork.files.storage import fetch, replace
+from knotwork.errors import FileError, KnotworkError, ParameterError, nearest_name
+from knotwork.files.storage import fetch, packed, replace, unpacked
 from knotwork.spline import Spline
 
 
@@ -27,8 +27,17 @@ class Format(NamedTuple):
     suffixes: tuple[str, ...]
     reads: str
     writes: str
+    #: what can be asked for when such a file is read, by keyword
+    options: tuple[str, ...] = ()
     #: the library that it needs beyond the core, '' if none
     needs: str = ""
+    #: whether its curves carry no parametrisation, so that shapes are what is compared
+    shapes: bool = False
+
+    @property
+    def codec(self) -> ModuleType:
+        """The module."""
+        return importlib.import_module(f"knotwork.files.{self.module}")
 
 
 #: all formats
@@ -39,10 +48,14 @@ FORMATS = (
         "tables",
         "table of points",
         (".csv", ".tsv", ".txt", ".dat", ".xy", ".asc"),
-        "polylines",
+        "polylines, in place",
         "curves of degree 1",
+        options=("columns", "skip", "split_at", "closed"),
+        shapes=True,
     ),
-    Format("svg", "SVG drawing", (".svg",), "paths and shapes, in place", "plane curves"),
+    Format(
+        "svg", "SVG drawing", (".svg", ".svgz"), "paths and shapes, in place", "plane curves", ("name",), shapes=True
+    ),
 )
 SUFFIXES = {suffix: each for each in FORMATS for suffix in each.suffixes}
 #: where files of other suffixes can come from
@@ -53,7 +66,12 @@ ELSEWHERE = {
     ".png": "it holds pixels; trace it first: potrace -s file.pbm",
     ".jpg": "it holds pixels; trace it first: potrace -s file.pbm",
     ".xlsx": "save the sheet as CSV",
+    ".ods": "save the sheet as CSV",
     ".shp": "turn it into GeoJSON: ogr2ogr file.geojson file.shp",
+    ".gpkg": "turn it into GeoJSON: ogr2ogr file.geojson file.gpkg",
+    ".kml": "turn it into GeoJSON: ogr2ogr file.geojson file.kml",
+    ".fit": "turn it into GPX: gpsbabel -i garmin_fit -f file.fit -o gpx -F file.gpx",
+    ".tcx": "turn it into GPX: gpsbabel -i gtrnctr -f file.tcx -o gpx -F file.gpx",
     ".dwg": "save it as DXF",
 }
 
@@ -86,20 +104,27 @@ class Written:
     bound: float
 
 
-def read(path: str | os.PathLike[str]) -> list[Spline]:
+def read(path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> list[Spline]:
     """Return the splines in a file, one or more.
 
     Parameters
     ----------
     path : path-like
-        The suffix tells the format: ``.json`` (Knotwork's own, and that of geomdl), ``.npz``, ``.csv`` (polylines) or
-        ``.svg`` (paths and shapes).
+        The suffix tells the format; ``knotwork formats`` lists them. Of another suffix, the content does: a table, a
+        drawing, JSON.
+    format : str, optional
+        A suffix, such as "csv", that tells the format instead.
+    **options
+        What the format can be asked for: of tables ``columns``, ``skip``, ``split_at`` and ``closed``, of drawings
+        ``name``, the id of the one element to read.
 
     Raises
     ------
     FileError
         If the file is not there, is not what its suffix says, is damaged, or holds no spline. The message names the
         file and the place in it.
+    ParameterError
+        If the format knows no such option.
 
     Warns
     -----
@@ -117,15 +142,28 @@ def read(path: str | os.PathLike[str]) -> list[Spline]:
     [<curve of 3 points in 2-D, degree 1>]
     """
     path = Path(path)
-    codec = codec_of(path)
-    data = fetch(path)
+    return decoded(fetched(path, format), path, format, options)
+
+
+def fetched(path: Path, format: str | None) -> bytes:
+    """Return the bytes of a file, unless its name says that they cannot be read."""
+    if format is not None or path.suffix.lower() in ELSEWHERE:
+        format_of(path, format)
+    return fetch(path)
+
+
+def decoded(data: bytes, path: Path, format: str | None, options: Mapping[str, Any]) -> list[Spline]:
+    """Return the splines in the bytes of a file."""
+    found = format_of(path, format, data)
+    require_options(found, path, options)
     remarks: list[str] = []
     try:
-        splines: list[Spline] = codec.decode(data, remarks.append)
+        splines: list[Spline] = found.codec.decode(unpacked(data), remarks.append, **options)
     except KnotworkError as exc:
-        raise FileError(f"{path}: {exc}") from exc
+        asked = options and isinstance(exc, ParameterError)
+        raise (ParameterError if asked else FileError)(f"{path}: {exc}") from exc
     for remark in remarks:
-        warnings.warn(f"{path}: {remark}", UserWarning, stacklevel=2)
+        warnings.warn(f"{path}: {remark}", UserWarning, stacklevel=3)
     if not splines:
         raise FileError(f"{path}: there is no spline in this file")
     return splines
@@ -167,8 +205,17 @@ def write(
     if not isinstance(path, str | os.PathLike):
         raise ParameterError(f"{type(path).__name__} given as the path; expected write(path, splines)")
     path = Path(path)
-    codec = codec_of(path)
     splines = [splines] if isinstance(splines, Spline) else list(splines)
+    data, bound = encoded(splines, path, None, accuracy)
+    replace(path, data)
+    return Written(path, len(splines), bound)
+
+
+def encoded(
+    splines: Sequence[Spline], path: Path, format: str | None = None, accuracy: float | None = None
+) -> tuple[bytes, float]:
+    """Return the bytes of a file that holds splines, and the bound of the error."""
+    found = format_of(path, format)
     if not splines:
         raise ParameterError(f"{path}: no splines given; expected one or more")
     for i, spline in enumerate(splines):
@@ -176,19 +223,46 @@ def write(
             raise ParameterError(f"{path}: splines[{i}] is a {type(spline).__name__}; expected a Spline")
     if accuracy is not None and not (accuracy > 0 and math.isfinite(accuracy)):
         raise ParameterError(f"accuracy {accuracy} given; expected a finite number above 0")
+    if not hasattr(found.codec, "encode"):
+        raise FileError(f"{path}: a {found.name} is written in place of one that was read, with its `Document`")
     try:
-        data, bound = codec.encode(splines, accuracy)
+        data, bound = found.codec.encode(list(splines), accuracy)
     except KnotworkError as exc:
         raise FileError(f"{path}: {exc}") from exc
-    replace(path, data)
-    return Written(path, len(splines), bound)
+    return packed(data, path), bound
 
 
-def codec_of(path: Path) -> ModuleType:
-    """Return the module for files of this suffix."""
-    suffix = path.suffix.lower()
+def format_of(path: Path, format: str | None = None, data: bytes | None = None) -> Format:
+    """Return the format of a file: the one asked for, that of the suffix, or that of the content if there is any."""
+    suffix = path.suffix.lower() if format is None else f".{format.lower().lstrip('.')}"
     found = SUFFIXES.get(suffix)
+    if found is None and format is None and suffix not in ELSEWHERE and data is not None:
+        found = _by_content(unpacked(data))
     if found is None:
-        way = f"; {ELSEWHERE[suffix]}" if suffix in ELSEWHERE else ""
-        raise FileError(f"{path}: unknown suffix {path.suffix!r}; expected one of {', '.join(SUFFIXES)}{way}")
-    return importlib.import_module(f"knotwork.files.{found.module}")
+        asked = f"format {format!r}" if format is not None else f"suffix {path.suffix!r}"
+        way = f"; {ELSEWHERE[suffix]}" if suffix in ELSEWHERE else nearest_name(suffix, SUFFIXES)
+        raise FileError(f"{path}: unknown {asked}; expected one of {', '.join(SUFFIXES)}{way}")
+    return found
+
+
+def _by_content(data: bytes) -> Format | None:
+    """Return the format whose mark is at the start of the bytes; None if there is none."""
+    head = data[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
+    if head.startswith(b"PK\x03\x04"):
+        return SUFFIXES[".npz"]
+    if head.startswith(b"{"):
+        return SUFFIXES[".json"]
+    if head.startswith(b"<"):
+        return SUFFIXES[".svg"] if b"<svg" in head else None
+    lines = head.splitlines()[:-1] or head.splitlines()
+    marks = b"0123456789+-.eE,;|\t \"'"
+    numbers = sum(bool(line.strip()) and not line.strip(marks) for line in lines)
+    return SUFFIXES[".dat"] if numbers > len(lines) / 2 else None
+
+
+def require_options(found: Format, path: Path, options: Mapping[str, Any]) -> None:
+    """Raise unless a format can be asked for these options."""
+    for name in options:
+        if name not in found.options:
+            known = f"it takes {', '.join(found.options)}" if found.options else "it takes none"
+            raise ParameterError(f"{path}: a {found.name} has no option {name!r}; {known}")

@@ -6,7 +6,7 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from knotwork.errors import FileError, ParameterError
 
@@ -37,6 +37,8 @@ class Layout:
     titles: int
     #: the names of the columns, if a line gives them
     names: tuple[str, ...] | None
+    #: how many columns there are
+    width: int = 0
 
     def cells(self, line: str) -> list[str]:
         """Return the cells of a line, without quotes, empty ones at the end and what follows a #."""
@@ -61,6 +63,11 @@ class Layout:
         if _NUMBER.fullmatch(cell):
             return float(cell.replace("d", "e").replace("D", "e"))
         return float(cell) if cell.lower().lstrip("+-") in ("nan", "inf", "infinity") else None
+
+    def is_row(self, cells: Sequence[str]) -> bool:
+        """Tell whether cells are a row of the table: all numbers, or two and more below a line of names."""
+        found = _numbers(self, cells)
+        return len(cells) == self.width and (found == len(cells) or (found > 1 and self.names is not None))
 
 
 def is_comment(line: str) -> bool:
@@ -112,23 +119,31 @@ def _with_titles(layout: Layout, judged: list[tuple[int, str]], skip: int) -> La
     usual = Counter(len(cells) for _, cells in rows if _numbers(layout, cells) > 1)
     width = max(usual, key=lambda w: (usual[w], w)) if usual else len(rows[0][1])
     names: tuple[str, ...] | None = None
-    for i, cells in rows:
-        if len(cells) == width and _is_row(layout, cells, names):
-            return Layout(layout.separator, layout.comma, i, names)
-        if _numbers(layout, cells) == len(cells) and len(cells) > 1 and len(cells) != width:
-            return Layout(layout.separator, layout.comma, i, names)
-        names = tuple(cells) if len(cells) >= width and _numbers(layout, cells) == 0 else None
-    return Layout(layout.separator, layout.comma, rows[-1][0] + 1 if names else rows[0][0], names)
+    layout = replace(layout, width=width)
+    for k, (i, cells) in enumerate(rows):
+        if replace(layout, names=names).is_row(cells):
+            return replace(layout, titles=i, names=names)
+        whole = _numbers(layout, cells) == len(cells) and len(cells) > 1 and len(cells) != width
+        if whole and not (k > 0 and all(len(below) == width for _, below in rows[k + 1 :][:9])):
+            return replace(layout, titles=i, names=names)  # a row that is too short or too long; the reader says so
+        fits = len(cells) == width or (layout.separator is not None and len(cells) > width)
+        names = tuple(cells) if fits and _numbers(layout, cells) == 0 else None
+    return replace(layout, titles=rows[-1][0] + 1 if names else rows[0][0], names=names)
 
 
-def _numbers(layout: Layout, cells: list[str]) -> int:
+def is_note(layout: Layout, line: str) -> bool:
+    """Tell whether a line below the rows is text, and no row that is damaged.
+
+    A row has as many cells as the others and a number among them, or nothing but numbers.
+    """
+    cells = layout.cells(line)
+    if not cells or (len(cells) == layout.width and _numbers(layout, cells)):
+        return False
+    return any(layout.number(word) is None for word in line.replace(",", " ").replace(";", " ").split())
+
+
+def _numbers(layout: Layout, cells: Sequence[str]) -> int:
     return sum(layout.number(cell) is not None for cell in cells)
-
-
-def _is_row(layout: Layout, cells: list[str], names: tuple[str, ...] | None) -> bool:
-    """Tell whether cells are numbers: all of them, or two and more below a line of names."""
-    found = _numbers(layout, cells)
-    return found == len(cells) or (found > 1 and names is not None)
 
 
 def chosen_columns(
@@ -142,7 +157,7 @@ def chosen_columns(
     width : int
         How many columns there are.
     numeric : list of bool
-        Which of them hold numbers.
+        Which columns hold numbers.
     wanted : sequence of str or int, optional
         Their names, or their numbers from 1, as a user gives them.
     remark : callable

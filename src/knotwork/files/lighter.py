@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,12 +11,14 @@ from knotwork.errors import ParameterError
 from knotwork.files.document import Document
 from knotwork.geometry.bezier import joined, raised
 from knotwork.insertion import to_bezier
+from knotwork.removal import reduce
 from knotwork.removal.shapes.bezier import EFFORTS, reduce_bezier
 from knotwork.removal.shapes.reducing import CORNER, breaks_by_length
 from knotwork.spline import Spline
 
 #: the part of a tolerance that the rounding of numbers may use
 ROUNDED = 0.1
+POLYLINE: dict[str, Any] = {"distance": "geometric", "form": "polyline"}
 
 
 class Lighter(NamedTuple):
@@ -54,16 +56,22 @@ def lighter(document: Document, tolerance: float, *, effort: str = "normal", cor
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
-    free = [i for i, place in enumerate(document.places) if not place.fixed and place.scale > 0]
-    accuracy = {i: ROUNDED * tolerance / document.places[i].scale for i in free}
+    places = document.places
+    free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
+    accuracy = {i: ROUNDED * tolerance / places[i].scale for i in free}
     nets = {i: _cubics(document.splines[i], i) for i in free}
     changed: dict[int, Spline] = {}
     counts = {i: len(net) for i, net in nets.items()}
     worst = 0.0
-    for scale in sorted({document.places[i].scale for i in free}):
-        alike = [i for i in free if document.places[i].scale == scale]
+    for i in (i for i in free if places[i].straight):
+        reduction = reduce(document.splines[i], (1 - ROUNDED) * tolerance / places[i].scale, **POLYLINE, effort=effort)
+        changed[i], counts[i] = reduction.spline, len(reduction.spline.space.breaks) - 1
+        worst = max(worst, reduction.bound * places[i].scale)
+    curved = [i for i in free if not places[i].straight]
+    for scale in sorted({places[i].scale for i in curved}):
+        alike = [i for i in curved if places[i].scale == scale]
         at = np.cumsum([0, *(len(nets[i]) for i in alike)])
-        closed = [document.places[i].closed for i in alike]
+        closed = [places[i].closed for i in alike]
         allowed = (1 - ROUNDED) * tolerance / scale
         found = reduce_bezier(
             np.concatenate([nets[i] for i in alike]), at, allowed, closed=closed, effort=effort,

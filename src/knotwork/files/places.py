@@ -23,5 +23,7 @@ class Place(NamedTuple):
     where: str = ""
     #: the largest factor by which it is drawn larger than its coordinates say
     scale: float = 1.0
-    #: whether it must stay as it is: a shape of SVG that is no path, say
+    #: whether it must stay as it is: a circle of SVG, say
     fixed: bool = False
+    #: whether only straight lines can stand there
+    straight: bool = False

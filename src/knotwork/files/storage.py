@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import gzip
 import os
 import secrets
 import stat
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +57,31 @@ def replace(path: Path, data: bytes) -> None:
     finally:
         with contextlib.suppress(OSError):  # gone, unless something failed above, which is what counts
             os.unlink(beside)
+
+
+#: what a packed file may unpack to, at most
+UNPACKED = 1 << 28
+
+
+def unpacked(data: bytes) -> bytes:
+    """Return the bytes in a gzip file, and others as they are."""
+    if not data.startswith(b"\x1f\x8b"):
+        return data
+    reader = zlib.decompressobj(31)
+    try:
+        found = reader.decompress(data, UNPACKED)
+    except zlib.error as exc:
+        raise FileError(f"the packed file is damaged: {exc}") from None
+    if reader.unconsumed_tail:
+        raise FileError(f"the packed file holds more than {UNPACKED} bytes")
+    if not reader.eof:
+        raise FileError("the packed file breaks off")
+    return found
+
+
+def packed(data: bytes, path: Path) -> bytes:
+    """Return the bytes to be written: packed if the suffix says so."""
+    return gzip.compress(data, mtime=0) if path.suffix.lower() == ".svgz" else data
 
 
 def text(data: bytes) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import codecs
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,12 +13,14 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, ParameterError
-from knotwork.files.layout import Layout, chosen_columns, is_comment, layout_of
+from knotwork.files.layout import Layout, chosen_columns, is_comment, is_note, layout_of
 from knotwork.files.places import Place
-from knotwork.files.storage import text
 from knotwork.geometry.lengths import increasing
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
+
+#: a line with its end
+_ENDED = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")
 
 
 def decode(data: bytes, remark: Callable[[str], None], **options: Any) -> list[Spline]:
@@ -29,28 +33,42 @@ class Table:
     """The lines of a table, and the polylines in it."""
 
     data: bytes
-    lines: list[str]
     layout: Layout
     splines: tuple[Spline, ...]
     places: tuple[Place, ...]
+    #: the lines of each polyline, from 0, and its points in them; as many
+    blocks: list[list[int]]
+    points: list[Array]
     #: whether every column is a coordinate, so that points that are new can be written in the same form
     complete: bool
 
     def rewritten(
         self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
     ) -> tuple[bytes, float]:
-        """Return the bytes as they were, or the titles as they were and the points of all polylines."""
-        if not changed:
-            return self.data, 0.0
+        """Return the bytes as they were but for the lines of polylines that are replaced.
+
+        A point that was there keeps its line, with what else stands in it.
+        """
+        lines = _ENDED.findall(self.data.decode("utf-8", "surrogateescape"))
+        end = next((line[len(line.rstrip("\r\n")) :] for line in lines), "") or "\n"
+        for i in sorted(changed, key=lambda i: self.blocks[i][0], reverse=True):
+            block = self.blocks[i]
+            kept = {tuple(point): lines[k] for point, k in zip(self.points[i].tolist(), block, strict=True)}
+            rows = []
+            for point in _vertices(changed[i], f"splines[{i}]").tolist():
+                row = kept.get(tuple(point))
+                rows.append(self._row(point) + end if row is None else row.rstrip("\r\n") + end)
+            if not lines[block[-1]].endswith(("\r", "\n")):
+                rows[-1] = rows[-1].rstrip("\r\n")
+            lines[block[0] : block[-1] + 1] = rows
+        return "".join(lines).encode("utf-8", "surrogateescape"), 0.0
+
+    def _row(self, point: list[float]) -> str:
         if not self.complete:
             raise FileError("some columns are no coordinates, and new points have none of them; write another file")
-        blocks, bound = _blocks_of([changed.get(i, s) for i, s in enumerate(self.splines)])
-        mark = {None: " ", ",": ",", ";": ";", "\t": "\t", "|": "|"}[self.layout.separator]
-        body = "\n".join("".join(mark.join(row) + "\n" for row in block) for block in blocks)
-        if self.layout.comma:
-            body = body.replace(".", ",")
-        titles = "".join(f"{line}\n" for line in self.lines[: self.layout.titles])
-        return (titles + body).encode(), bound
+        mark = self.layout.separator or " "
+        row = mark.join(map(repr, point))
+        return row.replace(".", ",") if self.layout.comma else row
 
 
 def opened(
@@ -87,9 +105,10 @@ def opened(
     FileError
         If a line is no row of the table; the message tells the line and the column.
     """
-    lines = text(data).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = _decoded(data).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     layout = layout_of(lines, skip)
     blocks = _without_counts(layout, lines, _blocks(lines, max(layout.titles, skip)))
+    blocks = _without_notes(layout, lines, blocks, remark)
     if not blocks:
         raise FileError("there are no points in this file")
     tables = [_numbers(lines, block, layout) for block in blocks]
@@ -97,7 +116,8 @@ def opened(
         blocks, tables = _split(layout, blocks, tables, split_at)
     repeats = Repeats()
     curves: list[Spline] = []
-    complete = True
+    shown: list[Array] = []
+    complete = split_at is None
     for block, values in zip(blocks, tables, strict=True):
         numeric = [bool(np.isfinite(column).any()) or not layout.names for column in values.T]
         picked = chosen_columns(layout, values.shape[1], numeric, columns, remark if not curves else _nothing)
@@ -105,10 +125,18 @@ def opened(
         points = values[:, picked]
         _require_points(lines, block, layout, points, picked)
         curves.append(_curve(points, block, repeats, closed))
+        shown.append(points)
     if repeats.count:
         remark(f"line {repeats.line}: {repeats.count} point(s) equal to the one before are left out")
     places = [Place(closed=c.space.periodic, where=f"line {b[0] + 1}") for c, b in zip(curves, blocks, strict=True)]
-    return Table(data, lines, layout, tuple(curves), tuple(places), complete and split_at is None)
+    return Table(data, layout, tuple(curves), tuple(places), blocks, shown, complete)
+
+
+def _decoded(data: bytes) -> str:
+    """Return the text of a table: UTF-16 with its mark, or bytes whose letters beyond ASCII do not matter."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", "replace")
+    return data.removeprefix(codecs.BOM_UTF8).decode("utf-8", "surrogateescape")
 
 
 def _nothing(_: str) -> None:
@@ -117,20 +145,17 @@ def _nothing(_: str) -> None:
 
 def encode(splines: list[Spline], accuracy: float | None) -> tuple[bytes, float]:
     """Return the points of polylines, a blank line between two; only the parameter is not kept."""
-    blocks, bound = _blocks_of(splines)
-    return "\n".join("".join(",".join(row) + "\n" for row in block) for block in blocks).encode(), bound
+    blocks = [_vertices(spline, f"splines[{i}]").tolist() for i, spline in enumerate(splines)]
+    return "\n".join("".join(",".join(map(repr, row)) + "\n" for row in block) for block in blocks).encode(), 0.0
 
 
-def _blocks_of(splines: list[Spline]) -> tuple[list[list[list[str]]], float]:
-    """Return the points of polylines as text, and how far they are off: not at all."""
-    blocks = []
-    for i, spline in enumerate(splines):
-        _require_polyline(spline, f"splines[{i}]")
-        points = spline.coefficients
-        if spline.space.periodic:  # the point before the seam's end comes last: it is the one at the seam
-            points = np.concatenate([points[-1:], points])
-        blocks.append([[repr(x) for x in row] for row in points.tolist()])
-    return blocks, 0.0
+def _vertices(spline: Spline, place: str) -> Array:
+    """Return the points of a polyline; those of a closed one end where they begin."""
+    _require_polyline(spline, place)
+    points: Array = spline.coefficients
+    if spline.space.periodic:  # the point before the seam's end comes last: it is the one at the seam
+        points = np.concatenate([points[-1:], points])
+    return points
 
 
 class Repeats:
@@ -168,6 +193,19 @@ def _without_counts(layout: Layout, lines: list[str], blocks: list[list[int]]) -
             stops = np.cumsum([1, *(int(x or 0) for x in counts)])
             return [blocks[0][a:b] for a, b in pairwise(stops)] + blocks[1:]
     return blocks
+
+
+def _without_notes(
+    layout: Layout, lines: list[str], blocks: list[list[int]], remark: Callable[[str], None]
+) -> list[list[int]]:
+    """Leave out text below the last row."""
+    rows = [i for block in blocks for i in block]
+    last = next((k for k in range(len(rows) - 1, -1, -1) if layout.is_row(layout.cells(lines[rows[k]]))), len(rows))
+    notes = rows[last + 1 :]
+    if not notes or not is_note(layout, lines[notes[0]]):
+        return blocks
+    remark(f"line {notes[0] + 1}: {len(notes)} line(s) of text below the points are left out")
+    return [kept for kept in ([i for i in block if i < notes[0]] for block in blocks) if kept]
 
 
 def _numbers(lines: list[str], block: list[int], layout: Layout) -> Array:

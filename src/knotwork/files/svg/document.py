@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from knotwork.errors import FileError
+from knotwork.errors import FileError, ParameterError, nearest_name
 from knotwork.files.svg.notation import IDENTITY, Affine, compose, css_transform, length, numbers, transform
 from knotwork.files.svg.origins import box_of, origin
 from knotwork.files.svg.outlines import curves
@@ -39,8 +39,16 @@ def walk(data: bytes, remark: Callable[[str], None]) -> Drawn:
     return Drawn(root, remark)
 
 
-def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
+def decode(data: bytes, remark: Callable[[str], None], *, name: str | None = None) -> list[Spline]:
     """Return a curve for each subpath that the document draws, in user units of the outermost svg element.
+
+    Parameters
+    ----------
+    data : bytes
+    remark : callable
+        Is told what is left out.
+    name : str, optional
+        The id of an element that alone is read: as it is first drawn, or in its own coordinates if it is not.
 
     Raises
     ------
@@ -49,7 +57,10 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
     """
     drawn = walk(data, remark)
     found: list[Spline] = []
-    for element, place in list(drawn.shapes()):  # all of the walk first, which may find that it goes too far
+    shapes = list(drawn.shapes(name))  # all of the walk first, which may find that it goes too far
+    if name is not None:
+        shapes = list({id(element): (element, place) for element, place in reversed(shapes)}.values())[::-1]
+    for element, place in shapes:
         with _at(element):
             found += curves(drawn.outline(element, place), place.map)
     return found
@@ -104,14 +115,29 @@ class Drawn:
 
         return remark
 
-    def shapes(self) -> Iterator[tuple[Element, Place]]:
-        """Yield the elements that draw outlines, in order, each with its place."""
+    def shapes(self, name: str | None = None) -> Iterator[tuple[Element, Place]]:
+        """Yield the elements that draw outlines, in order, each with its place; those of one element if it is named."""
         try:
             whole = _whole_of_root(self.root)
         except FileError as exc:
             self._remark_at(self.root)(str(exc))
             whole = (None, None, None)
-        return self._element(self.root, Place(IDENTITY, whole))
+        start = Place(IDENTITY, whole)
+        if name is None:
+            return self._element(self.root, start)
+        return iter(self._of(name, start))
+
+    def _of(self, name: str, start: Place) -> list[tuple[Element, Place]]:
+        """Return what a named element draws, each time that it is drawn, or else as it would be at the origin."""
+        target = self.names.get(name)
+        if target is None:
+            raise ParameterError(f"no element has the id {name!r}{nearest_name(name, self.names)}")
+        inside = {id(element) for element in target.all()}
+        found = [pair for pair in self._element(self.root, start) if id(pair[0]) in inside]
+        if found:
+            return found
+        elements = target.children if target.tag == "symbol" else [target]
+        return [pair for element in elements for pair in self._element(element, start)]
 
     def _name(self, element: Element) -> None:
         if "id" in element.attributes:

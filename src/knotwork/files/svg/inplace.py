@@ -16,7 +16,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.places import Place
-from knotwork.files.svg.compact import Encoder, Pen, digits_for, joined, moved
+from knotwork.files.svg.compact import Encoder, Pen, digits_for, joined, moved, separated
 from knotwork.files.svg.document import Place as DrawnAt
 from knotwork.files.svg.document import walk
 from knotwork.files.svg.drawing import pieces_of
@@ -41,6 +41,8 @@ class Outline(NamedTuple):
     element: Element
     #: where its data stands; None if it cannot be replaced
     span: Span | None
+    #: whether that is the attribute points, which holds the corners of straight lines
+    corners: bool
     #: its subpaths, and which splines of the document they are; -1 for those that go nowhere
     subpaths: list[Subpath]
     splines: list[int]
@@ -89,8 +91,8 @@ class Drawing:
         return spliced(self.data, values), worst
 
 
-def opened(data: bytes, remark: Callable[[str], None]) -> Drawing:
-    """Return the drawing in the bytes of a file.
+def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = None) -> Drawing:
+    """Return the drawing in the bytes of a file; with a name, of the element with that id alone.
 
     Raises
     ------
@@ -100,7 +102,7 @@ def opened(data: bytes, remark: Callable[[str], None]) -> Drawing:
     drawn = walk(data, remark)
     once: dict[int, tuple[Element, DrawnAt]] = {}
     scales: dict[int, float] = {}
-    for element, drawn_at in list(drawn.shapes()):
+    for element, drawn_at in list(drawn.shapes(name)):
         once.setdefault(id(element), (element, drawn_at))
         scales[id(element)] = max(scales.get(id(element), 0.0), _scale(drawn_at.map))
     outlines: list[Outline] = []
@@ -109,18 +111,19 @@ def opened(data: bytes, remark: Callable[[str], None]) -> Drawing:
     for key, (element, at) in once.items():
         subpaths = drawn.outline(element, at)
         declared = drawn.styles.declared(element, "d")
-        stands = span(data, element, "d") if element.tag == "path" and not declared else None
+        corners = element.tag in ("polyline", "polygon")
+        stands = span(data, element, "points" if corners else "d") if element.tag == "path" or corners else None
+        stands = None if declared else stands
         indices = []
         for number, subpath in enumerate(subpaths):
             found = curves([subpath], IDENTITY)
             indices.append(len(splines) if found else -1)
             for spline in found:
                 splines.append(spline)
-                name = element.attributes.get("id")
                 where = f"line {element.line}, <{element.tag}>"
                 places.append(
                     Place(
-                        name=name,
+                        name=element.attributes.get("id"),
                         layer=at.layer,
                         closed=subpath.closed,
                         filled=at.filled,
@@ -129,9 +132,10 @@ def opened(data: bytes, remark: Callable[[str], None]) -> Drawing:
                         where=f"{where}, subpath {number + 1}" if len(subpaths) > 1 else where,
                         scale=scales[key],
                         fixed=stands is None,
+                        straight=corners,
                     )
                 )
-        outlines.append(Outline(element, stands, subpaths, indices, scales[key]))
+        outlines.append(Outline(element, stands, corners, subpaths, indices, scales[key]))
     return Drawing(data, tuple(outlines), tuple(splines), tuple(places))
 
 
@@ -158,6 +162,8 @@ def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) 
     """Return the path data of an outline, and how far rounding moves each subpath."""
     text, pen = "", Pen((0, 0), "", None, "")
     worst = []
+    if outline.corners:
+        return _points(outline, changed, encoder)
     for subpath, i in zip(outline.subpaths, outline.splines, strict=True):
         within = STRAIGHT / 2 * 10.0**-encoder.digits if encoder.digits is not None else 0.0
         way, off = subpath_of(changed[i], subpath.closed, within) if i in changed else (subpath, 0.0)
@@ -165,6 +171,19 @@ def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) 
         worst.append(off if encoder.digits is None else off + moved(way, encoder))
         text = joined(text, more)
     return text, worst
+
+
+def _points(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -> tuple[str, list[float]]:
+    """Return the corners of a polyline or polygon as text, and how far rounding moves them."""
+    (subpath,), (i,) = outline.subpaths, outline.splines
+    way, off = subpath_of(changed[i], subpath.closed) if i in changed else (subpath, 0.0)
+    if any(len(segment) > 1 for segment in way.segments):
+        raise FileError(f"the new spline has curves in it; a {outline.element.tag} holds straight lines")
+    points = [way.start, *(segment[-1] for segment in way.segments)]
+    if way.closed and points[-1] == points[0]:
+        points.pop()
+    numbers = [encoder.number(x) for point in points for x in encoder.grid(point)]
+    return separated(numbers), [off if encoder.digits is None else off + moved(way, encoder)]
 
 
 def subpath_of(spline: Spline, closed: bool, within: float = 0.0) -> tuple[Subpath, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 from xml.parsers import expat
@@ -28,6 +29,12 @@ class Element:
     start: int = -1
     children: list[Element] = field(default_factory=list)
     text: str = ""
+
+    def all(self) -> Iterator[Element]:
+        """Yield the element and all inside it."""
+        yield self
+        for child in self.children:
+            yield from child.all()
 
 
 def parse(data: bytes) -> Element:
