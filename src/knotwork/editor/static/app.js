@@ -92,7 +92,7 @@ export class App {
     this.preview = null;
     this.lens = {};
     if (fresh) {
-      this.camera.show(this.drawing.box());
+      this.camera.show(this.drawing.box(), this.covered());
     }
     if (news.reason) this.say(news.case, news.reason);
     this.show();
@@ -173,8 +173,15 @@ export class App {
     this.show();
   }
 
+  /** What the panel covers of the sheet: its right side, or on a small screen its lower part. */
+  covered() {
+    const { width, height } = $("panel").getBoundingClientRect();
+    const below = width > this.camera.width / 2;
+    return { right: width && !below ? width + 12 : 0, bottom: width && below ? height + 62 : 0 };
+  }
+
   showAll() {
-    this.camera.show(this.drawing.box());
+    this.camera.show(this.drawing.box(), this.covered());
     this.show();
   }
 
@@ -506,7 +513,10 @@ export class App {
   // ---- the rest -----------------------------------------------------------------------------------------------------
 
   togglePanel() {
+    const before = this.covered();
     const open = document.body.classList.toggle("panel");
+    const now = this.covered();
+    this.pan((before.right - now.right) / 2, (before.bottom - now.bottom) / 2);
     $("panel-toggle").setAttribute("aria-expanded", String(open));
   }
 

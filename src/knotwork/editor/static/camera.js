@@ -34,13 +34,17 @@ export class Camera {
     this.y += py - qy;
   }
 
-  /** Show a box. @param {number[] | null} box */
-  show(box) {
+  /**
+   * Show a box in what is free of the sheet.
+   * @param {number[] | null} box  its lower left and upper right corner
+   * @param {{right: number, bottom: number}} covered  pixels at the sides that something else covers
+   */
+  show(box, { right, bottom }) {
     if (!box) return;
-    const [a, b, c, d] = box;
-    const size = Math.max((c - a) / Math.max(this.width - 160, 80), (d - b) / Math.max(this.height - 260, 80));
+    const [a, b, c, d] = box, width = this.width - right, height = this.height - bottom;
+    const size = Math.max((c - a) / Math.max(width - 160, 80), (d - b) / Math.max(height - (bottom ? 160 : 260), 80));
     this.scale = size > 0 ? 1 / size : 1;
-    this.x = (a + c) / 2;
-    this.y = (b + d) / 2;
+    this.x = (a + c) / 2 + right / 2 / this.scale;
+    this.y = (b + d) / 2 - bottom / 2 / this.scale;
   }
 }
