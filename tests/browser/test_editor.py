@@ -69,11 +69,11 @@ class Sheet:
             self.page.keyboard.press("Escape")
 
     @contextmanager
-    def change(self):
+    def change(self, seconds=8):
         """Wait for the next revision."""
         before = self.revision
         yield
-        self.until("before => app.drawing.revision !== before", arg=before)
+        self.until("before => app.drawing.revision !== before", arg=before, seconds=seconds)
 
     @property
     def revision(self):
@@ -245,7 +245,7 @@ def test_two_tabs_show_the_same(sheet, served):
 
 def test_a_curve_drawn_by_hand_has_few_points_and_can_be_read_as_a_line(sheet):
     turn = np.linspace(0, np.pi, 120)
-    with sheet.change():
+    with sheet.change(seconds=400):  # what fits it may have to be compiled first
         sheet.page.mouse.move(300, 400)
         sheet.page.mouse.down()
         for a in turn[1:]:

@@ -26,4 +26,4 @@ def edit(file: Path | None, store: Path | None, port: int, browser: bool) -> Non
     """
     from knotwork.editor.launch import edit as start
 
-    start(file, store=store, port=port, browse=browser, announce=click.echo)
+    start(file, store=store, port=port, browse=browser, warm=True, announce=click.echo)

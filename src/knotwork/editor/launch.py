@@ -7,10 +7,14 @@ import json
 import os
 import secrets
 import socket
+import subprocess
 import sys
+import threading
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
+
+import numpy as np
 
 from knotwork.errors import MissingExtraError, ParameterError
 
@@ -33,6 +37,7 @@ def edit(
     store: Path | None = None,
     port: int = 0,
     browse: bool = True,
+    warm: bool = False,
     announce: Callable[[str], None] = print,
 ) -> None:
     """Serve the editor on 127.0.0.1 until it is stopped.
@@ -47,6 +52,8 @@ def edit(
         0 takes the one of the last time, or else a free one.
     browse : bool
         Whether to open a browser.
+    warm : bool
+        Whether to compile beside what the first curve drawn by hand needs, if it has never been compiled.
     announce : callable
         Is told the address.
 
@@ -88,9 +95,25 @@ def edit(
         announce(address)
         if browse:
             webbrowser.open(address)
+        if warm:
+            threading.Thread(target=_warm, daemon=True).start()
         app = application(drawings, token, hosts, first)
         config = uvicorn.Config(app, log_level="warning", ws_max_size=MESSAGE + 1000, server_header=False)
         uvicorn.Server(config).run(sockets=[listener])
+
+
+def _warm() -> None:
+    """Fit a curve drawn by hand, in another process that leaves the processor to this one; what it compiles is kept."""
+    script = "import os; getattr(os, 'nice', int)(15); from knotwork.editor.launch import first_curve; first_curve()"
+    subprocess.run([sys.executable, "-c", script], check=False, capture_output=True)
+
+
+def first_curve() -> None:
+    """Draw an arc of 400 points by hand, and forget it."""
+    from knotwork.sketch import Sketch, stroke
+
+    turn = np.linspace(0, np.pi, 400)
+    stroke(Sketch(), np.stack([np.cos(turn), np.sin(turn)], axis=1))
 
 
 def _last_address(store: Path) -> tuple[int, str]:

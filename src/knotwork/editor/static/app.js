@@ -40,6 +40,7 @@ export class App {
     this.hand = new Hand(this);
     this.documents = new Documents(this);
     this.panel = new Panel(this);
+    /** @type {Wire} */
     this.wire = new Wire(this.token, (news) => this.heard(news), (state) => this.lineIs(state));
     listen(this);
     this.buttons();
@@ -91,9 +92,7 @@ export class App {
     for (const vertex of this.vertices) if (vertex >= count) this.vertices.delete(vertex);
     this.preview = null;
     this.lens = {};
-    if (fresh) {
-      this.camera.show(this.drawing.box(), this.covered());
-    }
+    if (fresh) this.camera.show(this.drawing.box(), this.covered());
     if (news.reason) this.say(news.case, news.reason);
     this.show();
     this.look();
@@ -253,7 +252,11 @@ export class App {
 
   // ---- actions ------------------------------------------------------------------------------------------------------
 
-  /** A stroke was drawn. @param {number[][]} path @param {number[] | null} pressure */
+  /**
+   * A stroke was drawn.
+   * @param {number[][]} path
+   * @param {number[] | null} pressure
+   */
   async drawn(path, pressure) {
     this.lastStroke = { path, pressure };
     await this.draw(path, pressure, "auto");
@@ -270,7 +273,10 @@ export class App {
     return answer;
   }
 
-  /** Take the last stroke back and read it the other way. @param {string} reading */
+  /**
+   * Take the last stroke back and read it the other way.
+   * @param {string} reading
+   */
   async readAgain(reading) {
     if (!this.lastStroke) return;
     const { path, pressure } = this.lastStroke;
@@ -322,7 +328,10 @@ export class App {
     this.chosen();
   }
 
-  /** The polygon follows the hand; the curve when it lets go. @param {[number, number]} by */
+  /**
+   * The polygon follows the hand; the curve when it lets go.
+   * @param {[number, number]} by
+   */
   dragged(by) {
     const curve = this.drawing.curves[this.selected];
     if (!this.held || !curve) return;
@@ -358,7 +367,10 @@ export class App {
     this.move([way[0] * step, way[1] * step]);
   }
 
-  /** Delete vertices, or, keeping the shape, the knot nearest to the chosen vertex. @param {boolean} keepShape */
+  /**
+   * Delete vertices, or, keeping the shape, the knot nearest to the chosen vertex.
+   * @param {boolean} keepShape
+   */
   remove(keepShape) {
     const curve = this.drawing.curves[this.selected];
     if (!curve) return;
@@ -375,7 +387,11 @@ export class App {
     this.vertices = new Set();
   }
 
-  /** Insert a knot, and show Boehm's construction step by step. @param {number} index @param {number} u */
+  /**
+   * Insert a knot, and show Boehm's construction step by step.
+   * @param {number} index
+   * @param {number} u
+   */
   async insertKnot(index, u) {
     this.choose(index);
     const told = (await this.wire.ask({ ask: "boehm", curve: index, u })).answer;
@@ -454,7 +470,11 @@ export class App {
     return at(curve.pieces[i], Math.min(Math.max(t, 0), 1));
   }
 
-  /** The pointer moves over the sheet: the lens follows it. @param {number} x @param {number} y */
+  /**
+   * The pointer moves over the sheet: the lens follows it.
+   * @param {number} x
+   * @param {number} y
+   */
   async hover(x, y) {
     if (this.tool !== "lens" || this.asking) return;
     const hit = this.hand.curveAt(x, y, 80);

@@ -19,13 +19,22 @@ export class Camera {
     return [(x - this.width / 2) / this.scale + this.x, (this.height / 2 - y) / this.scale + this.y];
   }
 
-  /** Move by pixels. @param {number} dx @param {number} dy */
+  /**
+   * Move by pixels.
+   * @param {number} dx
+   * @param {number} dy
+   */
   pan(dx, dy) {
     this.x -= dx / this.scale;
     this.y += dy / this.scale;
   }
 
-  /** Scale about a place on the screen. @param {number} factor @param {number} x @param {number} y */
+  /**
+   * Scale about a place on the screen.
+   * @param {number} factor
+   * @param {number} x
+   * @param {number} y
+   */
   zoom(factor, x = this.width / 2, y = this.height / 2) {
     const [px, py] = this.toPlane(x, y);
     this.scale = Math.min(1e9, Math.max(1e-9, this.scale * factor));

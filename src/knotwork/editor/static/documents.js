@@ -32,7 +32,10 @@ export class Documents {
     this.fill();
   }
 
-  /** Open what was open before, or the newest, or a new one. @param {string | null} first */
+  /**
+   * Open what was open before, or the newest, or a new one.
+   * @param {string | null} first
+   */
   async begin(first) {
     if (this.current) return;
     const before = location.hash.slice(1);

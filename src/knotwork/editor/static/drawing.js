@@ -51,7 +51,10 @@ export class Drawing {
     }
   }
 
-  /** The box of all control points, or null. @returns {[number, number, number, number] | null} */
+  /**
+   * The box of all control points, or null.
+   * @returns {[number, number, number, number] | null}
+   */
   box() {
     let [a, b, c, d] = [Infinity, Infinity, -Infinity, -Infinity];
     for (const { points } of this.curves)

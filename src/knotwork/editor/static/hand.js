@@ -21,6 +21,10 @@ export class Hand {
     this.fingers = new Map();
     /** @type {"" | "stroke" | "drag" | "pan" | "pinch" | "select"} */
     this.doing = "";
+    /** @type {[number, number]} where the hand came down */
+    this.start = [0, 0];
+    /** @type {[number, number]} where it was last */
+    this.last = [0, 0];
     this.penSeen = -Infinity;
     this.space = false;
     const sheet = app.sheet;
@@ -160,7 +164,10 @@ export class Hand {
     this.app.inked();
   }
 
-  /** The end of a straight line, turned to a multiple of 15 degrees. @param {number[]} to */
+  /**
+   * The end of a straight line, turned to a multiple of 15 degrees.
+   * @param {number[]} to
+   */
   snapped(to) {
     const [dx, dy] = [to[0] - this.start[0], to[1] - this.start[1]];
     const angle = (Math.round((Math.atan2(dy, dx) * 12) / Math.PI) * Math.PI) / 12;
@@ -179,7 +186,10 @@ export class Hand {
     this.app.drawn(path.map(([x, y]) => this.app.camera.toPlane(x, y)), pressure);
   }
 
-  /** A tap without a stroke chooses a curve; with Alt it puts a vertex at the end. @param {PointerEvent} event */
+  /**
+   * A tap without a stroke chooses a curve; with Alt it puts a vertex at the end.
+   * @param {PointerEvent} event
+   */
   tap(event) {
     const [x, y] = this.place(event);
     if (event.altKey) return this.app.put(this.app.camera.toPlane(x, y));
@@ -188,7 +198,12 @@ export class Hand {
 
   // ---- vertices -----------------------------------------------------------------------------------------------------
 
-  /** The vertex at a place: of the chosen curve first. @param {number} x @param {number} y @param {number} near */
+  /**
+   * The vertex at a place: of the chosen curve first.
+   * @param {number} x
+   * @param {number} y
+   * @param {number} near
+   */
   vertexAt(x, y, near) {
     const { drawing, camera, selected } = this.app;
     if (!this.app.shows("polygon")) return null;

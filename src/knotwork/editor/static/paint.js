@@ -43,7 +43,11 @@ export function paint(app) {
   marks(app);
 }
 
-/** A quiet grid, a line every power of ten. @param {CanvasRenderingContext2D} pen @param {App["camera"]} camera */
+/**
+ * A quiet grid, a line every power of ten.
+ * @param {CanvasRenderingContext2D} pen
+ * @param {App["camera"]} camera
+ */
 function grid(pen, camera) {
   const step = 10 ** Math.ceil(Math.log10(36 / camera.scale));
   const [left, top] = camera.toPlane(0, 0);
@@ -132,7 +136,11 @@ function label(camera, p, text) {
   return element("text", { x: (x + 8).toFixed(1), y: (y - 8).toFixed(1), class: "label" }, text);
 }
 
-/** De Boor's triangle at the pointer, each point with the arguments of its blossom. @param {DocumentFragment} into @param {App} app */
+/**
+ * De Boor's triangle at the pointer, each point with the arguments of its blossom.
+ * @param {DocumentFragment} into
+ * @param {App} app
+ */
 function triangle(into, app) {
   const told = app.lens.triangle;
   if (!told) return;
@@ -145,7 +153,11 @@ function triangle(into, app) {
   });
 }
 
-/** Boehm's construction: new vertices on the sides of the old polygon. @param {DocumentFragment} into @param {App} app */
+/**
+ * Boehm's construction: new vertices on the sides of the old polygon.
+ * @param {DocumentFragment} into
+ * @param {App} app
+ */
 function boehm(into, app) {
   const { steps, shown } = /** @type {any} */ (app.boehm);
   steps.slice(0, shown).forEach((/** @type {any} */ step) => {
@@ -168,7 +180,10 @@ function comb(into, app) {
   into.append(element("path", { d: teeth, class: "teeth" }), element("path", { d: path(app.camera, ends), class: "comb" }));
 }
 
-/** The stroke that is being drawn, wider where the pen presses. @param {App} app */
+/**
+ * The stroke that is being drawn, wider where the pen presses.
+ * @param {App} app
+ */
 export function ink(app) {
   const pen = fitted(app.ink);
   const { path: drawn, pressure } = app.hand;
@@ -184,7 +199,10 @@ export function ink(app) {
   }
 }
 
-/** The knots below the sheet, and the basis functions over them. @param {App} app */
+/**
+ * The knots below the sheet, and the basis functions over them.
+ * @param {App} app
+ */
 export function knotline(app) {
   const svg = app.knotline;
   const curve = app.drawing.curves[app.selected];
