@@ -75,8 +75,8 @@ def test_parabolas_reach_their_vertex(c):
 
 def test_a_circle_has_the_box_of_a_circle():
     s = 0.5**0.5
-    square = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]]
-    circle = kw.curve(square, 2, [0, 0, 1, 1, 2, 2, 3, 3, 4], weights=[1, s] * 4, periodic=True)
+    square = [[1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]]
+    circle = kw.curve(square, 2, [0, 0, 1, 1, 2, 2, 3, 3, 4], weights=[s, 1] * 4, periodic=True)
     assert circle.bounds.tolist() == [[-1, -1], [1, 1]]
 
 
@@ -95,10 +95,10 @@ def test_a_saddle_and_a_dome():
 
 def test_a_surface_of_revolution_is_highest_along_a_line():
     s = 0.5**0.5
-    ring = np.array([[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]], float)
+    ring = np.array([[1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]], float)
     profile = np.array([[2, -1], [3, 0], [2, 1]], float)  # radius, height
     net = np.array([[[r * x, r * y, z] for x, y in ring] for r, z in profile])
-    weights = np.outer([1, 1, 1], [1, s] * 4)
+    weights = np.outer([1, 1, 1], [s, 1] * 4)
     vase = kw.Spline(
         [kw.SplineSpace.bezier(2, [0, 1]), kw.SplineSpace(2, [0, 0, 1, 1, 2, 2, 3, 3, 4], periodic=True)],
         np.concatenate([net * weights[..., None], weights[..., None]], axis=2),
