@@ -46,7 +46,7 @@ def test_deleting_the_vertex_restores_the_curve():
 
 
 def test_a_longer_session_replays():
-    """A knob, drawn in eleven strokes (as in Fig. 7.22): cases, and the knots far from it, are what they were."""
+    """A knob, drawn in ten strokes (as in Fig. 7.22): cases, and the knots far from it, are what they were."""
     record = json.loads((Path(__file__).parent / "knob.json").read_text())
     sketch = Sketch([kw.curve(record["points"], record["degree"], record["knots"])])
     before, cases = sketch.curves[0], []
