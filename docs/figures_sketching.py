@@ -1,6 +1,6 @@
 """Make the pictures of sketching.md, Figures 7.1 to 7.22 of the book: python docs/figures_sketching.py.
 
-The book prints the strokes of its figures only; where it gives no numbers (all but Figs. 7.19 to 7.21) they are our own.
+The book gives numbers for Figs. 7.19 to 7.21 only; the strokes of the others are our own.
 """
 
 from __future__ import annotations
@@ -214,7 +214,8 @@ def picture(names: list[str]) -> Any:
     """Return a picture of some figures side by side."""
     columns = min(len(names), 3 if len(names) in (3, 5) else 2)
     rows = -(-len(names) // columns)
-    fig, axes = plt.subplots(rows, columns, figsize=(3.7 * columns, 1.9 * rows + 0.3), squeeze=False, layout="constrained")
+    size = (3.7 * columns, 1.9 * rows + 0.3)
+    fig, axes = plt.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     for ax, name in zip(axes.flat, names, strict=False):
