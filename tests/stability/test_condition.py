@@ -220,12 +220,36 @@ def test_what_is_no_refinement(refined, message):
         condition(kw.SplineSpace.bezier(2, [0, 1]), refined)
 
 
-def test_refinements_of_a_period_have_none():
-    space = kw.SplineSpace.uniform(2, 5, periodic=True)
-    with pytest.raises(KnotError, match=r"is periodic: .* an odd number around a period cannot; .* clamp it first"):
-        condition(space, space.with_knots(0.1))
-    with pytest.raises(KnotError, match="has 2 coefficients around a period; one knot changes 3 different ones"):
-        condition(kw.SplineSpace.uniform(2, 2, periodic=True), 0.1)
+def largest_coefficient(A):
+    """Return the largest c_j of all c with A·c in [-1, 1], by SciPy's linear programmes."""
+    optimize = pytest.importorskip("scipy.optimize")
+    dense = np.asarray(A, float)
+    both = np.concatenate([dense, -dense])
+    unit = np.eye(dense.shape[1])
+    found = [optimize.linprog(-row, both, np.ones(len(both)), bounds=(None, None)).fun for row in unit]
+    return -min(found)
+
+
+@pytest.mark.parametrize("degree", [0, 1, 2, 3, 4])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 8])
+def test_several_knots_of_a_period(degree, count):
+    """Even and odd, as few as one, with multiple knots: the spline found attains what the linear programme allows."""
+    rng = np.random.default_rng(100 * degree + count)
+    t = np.cumsum(rng.uniform(0.2, 1, count + 1))
+    spaces = [kw.SplineSpace(degree, t, periodic=True)]
+    if degree > 1:
+        spaces.append(kw.SplineSpace(degree, np.insert(t, 0, t[0]), periodic=True))
+    for space in spaces:
+        for new in (rng.uniform(*space.domain, 2), rng.uniform(*space.domain, 7), rng.uniform(*space.domain, 1)):
+            refined = space.with_knots(new)
+            f = extremal(space, refined)
+            assert abs(kw.insert(f, new).coefficients).max() <= 1 + 1e-14
+            wanted = largest_coefficient(kw.insertion_matrix(space, refined))
+            assert condition(space, refined) == pytest.approx(wanted, rel=1e-9)
+    exact = spaces[0].in_exact_arithmetic()
+    f = extremal(exact, exact.with_knots([Fraction(x) for x in new] * min(2, degree + 1)))
+    assert max(abs(kw.insert(f, [Fraction(x) for x in new] * min(2, degree + 1)).coefficients)) <= 1
+    assert isinstance(max(abs(f.coefficients)), Fraction)
 
 
 @given(strategies.spaces(periodic=True, exact=True, degrees=st.integers(0, 4)), st.data())

@@ -187,5 +187,33 @@ def test_orders_are_whole_numbers_from_1(function, k):
 def test_bad_knots_and_spaces():
     with pytest.raises(KnotError, match=r"knot 1\.5 is outside the domain"):
         uniform(3, 1.5)
-    with pytest.raises(KnotError, match="periodic"):
-        kappa(kw.SplineSpace.uniform(2, 5, periodic=True))
+
+
+@pytest.mark.parametrize(("degree", "wanted"), [(0, 1), (1, 1), (2, 2), (3, 3), (4, 24 / 5), (5, 15 / 2)])
+def test_a_period_of_an_even_number_of_even_knots_is_eulers_spline(degree, wanted):
+    """Coefficients ±1 by turns: its largest value is Σ (-1)^i N_i at the middle or at a knot."""
+    for count in (2, 8):
+        assert kappa(kw.SplineSpace.uniform(degree, count, periodic=True)) == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_other_periods_against_a_linear_programme(degree, count):
+    """At many parameters, which leaves a little too much; and no less than what refined coefficients tell."""
+    optimize = pytest.importorskip("scipy.optimize")
+    rng = np.random.default_rng(10 * degree + count)
+    space = kw.SplineSpace(degree, np.cumsum(rng.uniform(0.3, 1, count + 1)), periodic=True)
+    V = np.asarray(space.basis(np.append(np.linspace(*space.domain, 1001), space.breaks)))
+    both = np.concatenate([V, -V])
+    tried = [optimize.linprog(-row, both, np.ones(len(both)), bounds=(None, None)).fun for row in np.eye(count)]
+    found = kappa(space)
+    assert found == pytest.approx(-min(tried), rel=1e-4)
+    assert found <= -min(tried) * (1 + 1e-9)
+    finer = space.with_knots(rng.uniform(*space.domain, 9))
+    assert kw.stability.condition(space, finer) <= found * (1 + 1e-9)
+
+
+def test_a_period_that_jumps_is_one_with_ends():
+    space = kw.SplineSpace(2, [0, 1, 2, 2, 2, 3, 5], periodic=True)
+    ends = kw.SplineSpace(2, [2, 2, 2, 3, 5, 6, 7, 7, 7])
+    assert kappa(space) == pytest.approx(kappa(ends), rel=1e-12)

@@ -16,13 +16,14 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import KnotError
 from knotwork.evaluation import Basis
-from knotwork.knots import distinct, nodes
+from knotwork.knots import nodes
 from knotwork.linear.banded import Banded
 from knotwork.linear.elimination import solve
 from knotwork.space import SplineSpace
@@ -96,14 +97,23 @@ def chebyshev(space: SplineSpace) -> Chebyshev:
 
 
 def between_jumps(space: SplineSpace) -> list[SplineSpace]:
-    """Return the spaces of the parts of splines between the knots where they may jump; of a period, itself."""
-    n, t, (a, b) = space.degree, space.knots, space.domain
-    x, counts = distinct(t)
-    jumps = x[(counts == n + 1) & (x > a) & (x < b)]
-    if space.periodic or not len(jumps):
+    """Return the spaces of the parts of splines between the knots where they may jump; of a period without, itself."""
+    x, counts = space.joints
+    jumps = x[counts == space.order]
+    if not len(jumps):
         return [space]
+    if space.periodic:
+        return between_jumps(opened_at(jumps[0], space)[0])
+    n, t = space.degree, space.knots
     cuts = [0, *np.searchsorted(t, jumps, "left").tolist(), space.dimension]
     return [SplineSpace(n, t[lo : hi + n + 1]) for lo, hi in itertools.pairwise(cuts)]
+
+
+def opened_at(x: Any, space: SplineSpace) -> tuple[SplineSpace, int]:
+    """Return a period that may jump at x as a space with ends, from there once around, and its first point's number."""
+    t, N, n = space.unrolled.knots, space.dimension, space.degree
+    first = int(np.searchsorted(t, x, "left"))
+    return SplineSpace(n, t[first : first + N + n + 1]), first - space.unrolled.zero
 
 
 def _alternating(space: SplineSpace, x: Array, values: Array) -> Spline:

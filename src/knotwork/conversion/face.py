@@ -9,7 +9,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, require_finite
 from knotwork.conversion.certificate import Difference, difference, rounding
-from knotwork.conversion.chebyshev import between_jumps, chebyshev
+from knotwork.conversion.chebyshev import between_jumps, chebyshev, opened_at
 from knotwork.conversion.elevation import raised
 from knotwork.conversion.nesting import common_refinement, embedding, holds
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
@@ -251,11 +251,9 @@ def _by_interpolation(spline: Spline, axis: int, target: SplineSpace) -> Spline:
 
 def _opened_at(spline: Spline, axis: int, target: SplineSpace, x: Any) -> Spline:
     """Interpolate in a period that may jump at x as in a space with ends, from there once around."""
-    t, N, n = target.unrolled.knots, target.dimension, target.degree
-    first = int(np.searchsorted(t, x, "left"))
-    around = SplineSpace(n, t[first : first + N + n + 1])
+    around, first = opened_at(x, target)
     found = _by_interpolation(trim(spline, *around.domain, axis), axis, around)
-    return spline.with_axis(axis, target, np.roll(found.coefficients, first - target.unrolled.zero, axis))
+    return spline.with_axis(axis, target, np.roll(found.coefficients, first, axis))
 
 
 def _at_extrema(spline: Spline, axis: int, target: SplineSpace) -> Spline:

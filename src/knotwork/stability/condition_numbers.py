@@ -23,13 +23,15 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, exact
 from knotwork.errors import KnotError
 from knotwork.insertion import insertion_matrix
+from knotwork.insertion.refinement import missing_knots
 from knotwork.linear.banded import Banded
 from knotwork.linear.elimination import solve
 from knotwork.space import SplineSpace, require_space
 from knotwork.spline import Spline
+from knotwork.stability.periods import extremal_coefficients
 
 
 def condition(space: SplineSpace, refined: Any) -> Any:
@@ -38,7 +40,6 @@ def condition(space: SplineSpace, refined: Any) -> Any:
     Parameters
     ----------
     space : SplineSpace
-        A periodic one has at least ``degree + 1`` knots, and takes one new knot.
     refined : number or SplineSpace
         One new knot, or a refinement of `space`.
 
@@ -50,12 +51,13 @@ def condition(space: SplineSpace, refined: Any) -> Any:
     Raises
     ------
     KnotError
-        If the knot cannot be inserted, `refined` is no refinement, or `space` is periodic and several knots are given
-        or too few are there.
+        If the knot cannot be inserted, or `refined` is no refinement.
 
     Notes
     -----
-    δ of (6.3) and (6.4): by Proposition 6.3.1 for one knot, by the discrete Chebyshev spline for a refinement.
+    δ of (6.3) and (6.4): by Proposition 6.3.1 for one knot, by the discrete Chebyshev spline for a refinement. Around a
+    period, for several knots or where one changes some coefficient twice, by a linear programme for each coefficient:
+    to ten digits and more, from below, even if the numbers are exact.
 
     Examples
     --------
@@ -74,7 +76,8 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
 
     After insertion (``kw.insert``) its coefficients lie within [-1, 1] and are ±1 by turns in as many places as the
     space has dimensions: a discrete Chebyshev spline. Before, each coefficient is, in size, the largest that a spline
-    with such refined coefficients can have, and signs alternate.
+    with such refined coefficients can have, and signs alternate. Around a period this holds for one knot; for several,
+    the spline has the largest coefficient of all.
 
     Parameters
     ----------
@@ -90,11 +93,11 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
     ([1.0, -3.0, 1.0], [1.0, -1.0, -1.0, 1.0])
     """
     require_space(space, "condition")
-    if isinstance(refined, SplineSpace) and space.periodic:
-        raise KnotError(
-            f"{space!r} is periodic: refined coefficients of the extremal spline alternate in sign, and an odd number "
-            f"around a period cannot; expected one new knot, or a space with ends: clamp it first"
-        )
+    if space.periodic and isinstance(refined, SplineSpace):
+        new = missing_knots(space, refined)
+        if len(new) != 1:
+            return _of_period(space, insertion_matrix(space, refined))
+        refined = new
     if isinstance(refined, SplineSpace):
         A = insertion_matrix(space, refined)
         x, y = space.nodes, refined.nodes
@@ -105,9 +108,7 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
         raise KnotError(f"{len(new)} knots given; expected one, or a SplineSpace that refines this one")
     s, n = new.item(), space.degree
     if space.periodic and space.dimension <= n:
-        raise KnotError(
-            f"{space!r} has {space.dimension} coefficients around a period; one knot changes {n + 1} different ones"
-        )
+        return _of_period(space, insertion_matrix(space, space.with_knots(new)))
     t = space.unrolled.knots
     last = len(t) if space.periodic else int(np.searchsorted(t, space.domain[1], "left"))
     q = min(int(np.searchsorted(t, s, "right")), last) - 1
@@ -117,6 +118,15 @@ def extremal(space: SplineSpace, refined: Any) -> Spline:
     c[space.unrolled.own(np.arange(q - n, q + 1))] = signs * np.array(
         heights(t[q - n : q + n + 2].tolist(), s), t.dtype
     )
+    return Spline(space, c)
+
+
+def _of_period(space: SplineSpace, A: Banded) -> Spline:
+    """Return the spline of a period with the largest coefficient whose refined coefficients are within [-1, 1]."""
+    c = extremal_coefficients(A)
+    if space.exact:
+        c = exact(c, "coefficients", KnotError)
+        c = c / abs(A @ c).max()
     return Spline(space, c)
 
 

@@ -13,6 +13,7 @@ from knotwork.conversion.chebyshev import between_jumps, chebyshev
 from knotwork.errors import KnotError, ParameterError
 from knotwork.space import SplineSpace, require_space
 from knotwork.stability.condition_numbers import condition
+from knotwork.stability.periods import kappa_of_period
 
 
 class Worst(float):
@@ -115,21 +116,26 @@ def kappa(space: SplineSpace) -> float:
     Raises
     ------
     KnotError
-        If the space is periodic (signs cannot alternate around it if the dimension is odd, so no Chebyshev spline tells
-        the number), or a basis function vanishes on the domain.
+        If a basis function vanishes on the domain.
 
     Notes
     -----
-    The largest coefficient of the Chebyshev spline of each part between jumps.
+    The largest coefficient of the Chebyshev spline of each part between jumps. Around a period without jumps it is
+    found for each coefficient by itself, from below, to ten digits.
 
     Examples
     --------
     >>> import knotwork as kw
     >>> round(kw.stability.kappa(kw.SplineSpace.bezier(3, [0, 1])), 12)
     5.0
+    >>> round(kw.stability.kappa(kw.SplineSpace.uniform(3, 8, periodic=True)), 9)
+    3.0
     """
     require_space(space, "kappa")
-    return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in between_jumps(space))
+    parts = between_jumps(space)
+    if parts[0].periodic:
+        return kappa_of_period(space)
+    return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in parts)
 
 
 def basis_condition(k: int) -> Fraction:
