@@ -24,6 +24,8 @@ INK, NET, KNOT, PALE = "#1f3a5f", "#a3a8ae", "#c4502f", "#f2c9a1"
 
 #: points on all curves of a picture together, about, and on one axis of a surface
 CURVE_POINTS, SURFACE_POINTS = 20_000, 80
+#: points beyond which control polygon and knots hide the curve
+CROWDED = 2000
 #: the largest number in a picture: matplotlib multiplies up to three coordinates
 LARGEST = 1e100
 
@@ -33,8 +35,8 @@ def plot(
     ax: Axes | None = None,
     *,
     before: Spline | Sequence[Spline] | None = None,
-    control: bool = True,
-    knots: bool = True,
+    control: bool | None = None,
+    knots: bool | None = None,
     samples: int | None = None,
     label: str | None = None,
     **style: Any,
@@ -50,11 +52,11 @@ def plot(
         Where to draw; by default new axes, in three dimensions if they are needed.
     before : Spline or sequence of Spline, optional
         Drawn pale below, with its control points as dots: what `spline` was before an operation.
-    control : bool
-        Whether to draw the control polygon or net.
-    knots : bool
-        Whether to draw the knots: a dot on the curve, and a ring around it for each repetition; on a surface the
-        knot lines.
+    control : bool, optional
+        Whether to draw the control polygon or net; by default unless there are more than 2,000 points.
+    knots : bool, optional
+        Whether to draw the knots, by default unless there are more than 2,000 points: a dot on the curve, and a ring
+        around it for each repetition; on a surface the knot lines.
     samples : int, optional
         Points drawn between neighbouring knots; by default as many as make a smooth picture.
     label : str, optional
@@ -89,6 +91,8 @@ def plot(
         raise ParameterError("no spline given; expected at least one")
     if samples is not None:
         samples = whole(samples, "samples", 1, ParameterError)
+    few = sum(int(np.prod([space.dimension for space in s.spaces])) for s in over) <= CROWDED
+    control, knots = (few if given is None else given for given in (control, knots))
     spatial = _spatial([*under, *over])
     ax = _axes(ax, spatial)
     _draw(

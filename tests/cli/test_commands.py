@@ -95,6 +95,15 @@ def test_the_face_of_the_command(run):
         "count",
         "methods",
         "plot",
+        "close",
+        "elevate",
+        "fit",
+        "formats",
+        "interpolate",
+        "join",
+        "lower",
+        "split",
+        "trim",
     }
 
 
@@ -225,7 +234,7 @@ def test_remove_takes_back_what_insert_gave(run, curve):
 
 def test_remove_all_leaves_what_the_shape_needs(run, curve):
     run("insert", "curve.json", "--parts", "5", "-o", "finer.json")
-    run("remove", "finer.json", "--all", "-o", "finer.json")
+    run("remove", "finer.json", "--all", "--in-place")
     assert read("finer.json")[0].space == curve.space
 
 
@@ -233,7 +242,7 @@ def test_remove_all_from_a_closed_curve_keeps_the_seam_once(run):
     points = [[1, 0], [0, 1], [-1, 0], [0, -1], [2, -2]]
     ring = kw.curve(points, degree=2, periodic=True)
     write("ring.json", [kw.insert(ring, [0, 0.1, 0.9]), kw.Spline(ring.space, [[3, 4]] * 5)])
-    run("remove", "ring.json", "--all", "-o", "ring.json")
+    run("remove", "ring.json", "--all", "--in-place")
     back, dot = read("ring.json")
     assert back.space == ring.space
     np.testing.assert_allclose(back.points, ring.points, atol=1e-12)
@@ -312,11 +321,14 @@ def test_reduce_without_output_only_reports(run, wave):
     assert [p.name for p in Path().iterdir()] == ["wave.csv"]
 
 
-def test_the_input_changes_only_if_output_names_it(run, wave):
+def test_the_input_changes_only_if_asked_to(run, wave):
     before = Path("wave.csv").read_bytes()
     run("reduce", "wave.csv", "-t", "0.1", "-o", "small.csv")
     assert Path("wave.csv").read_bytes() == before
-    run("reduce", "wave.csv", "-t", "0.1", "-o", "wave.csv")
+    told = run("reduce", "wave.csv", "-t", "0.1", "-o", "wave.csv", code=1).stderr
+    assert "to replace it, give --in-place" in told
+    assert Path("wave.csv").read_bytes() == before
+    run("reduce", "wave.csv", "-t", "0.1", "--in-place")
     assert Path("wave.csv").read_bytes() == Path("small.csv").read_bytes() != before
 
 

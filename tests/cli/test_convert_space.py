@@ -64,7 +64,7 @@ def test_without_output_it_only_reports(run):
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        (["curve.json"], 2, "either --knots or --like"),
+        (["curve.json"], 2, "expected --knots, --like or --degree"),
         (["curve.json", "-k", TARGET, "--like", "curve.json"], 2, "either --knots or --like"),
         (["curve.json", "--like", "curve.json", "-d", 2], 2, "gives the degree"),
         (["curve.json", "-k", "0,0,0,0,2,2,2,2"], 1, "expected equal domains"),

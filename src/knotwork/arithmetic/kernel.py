@@ -58,6 +58,8 @@ _ARRAY, _OBJECT = np.ndarray, np.dtype(object)
 _wraps: ContextVar[dict[str, Wrap] | None] = ContextVar("wraps", default=None)
 _lock = threading.RLock()
 _spent = 0.0
+#: called with True when compiling begins, and with False when it ends; they may be nested
+WATCHERS: list[Callable[[bool], None]] = []
 
 
 def _mode_from_environment() -> str:
@@ -250,9 +252,29 @@ def cache_directory() -> Path:
     return (Path(base) if base else Path.home() / ".cache") / "knotwork"
 
 
+@functools.cache
+def _watch() -> None:
+    """Have Numba tell `WATCHERS` when it begins and ends to compile."""
+    from numba.core import event
+
+    class Watch(event.Listener):  # type: ignore[misc]
+        def on_start(self, _: Any) -> None:
+            for watcher in WATCHERS:
+                watcher(True)
+
+        def on_end(self, _: Any) -> None:
+            for watcher in WATCHERS:
+                watcher(False)
+
+    event.register("numba:compile", Watch())
+
+
 def _compile(bound: FunctionType, digest: str, options: dict[str, Any]) -> Callable[..., Any]:
     """Compile, with a disk cache in a directory of this very source; without one if it is not writable."""
     import numba
+
+    if WATCHERS:
+        _watch()
 
     def dispatcher() -> Any:
         result: Any = numba.njit(**options)(bound)

@@ -1,6 +1,25 @@
 """The command `knotwork`: a thin command for each function of the face, over files."""
 
-from knotwork.cli import changing, editing, insertion_methods, telling, writing  # their commands join the program
+from knotwork.cli import (  # their commands join the program
+    changing,
+    editing,
+    fitting,
+    insertion_methods,
+    reducing,
+    shaping,
+    telling,
+    writing,
+)
 from knotwork.cli.program import main
 
-__all__ = ["changing", "editing", "insertion_methods", "main", "telling", "writing"]
+__all__ = [
+    "changing",
+    "editing",
+    "fitting",
+    "insertion_methods",
+    "main",
+    "reducing",
+    "shaping",
+    "telling",
+    "writing",
+]

@@ -11,21 +11,26 @@ import click
 import knotwork as kw
 from knotwork.cli import report, terminal
 from knotwork.cli.program import FILE, as_json, axis_option, main, print_json
+from knotwork.cli.streams import Reading, expanded, reading
 from knotwork.cli.terminal import Failure
 from knotwork.errors import KnotworkError
 
 
 @main.command(short_help="Tell what splines files hold.")
 @click.argument("files", type=FILE, nargs=-1, required=True)
+@reading
 @as_json
-def info(files: Sequence[Path], as_json: bool) -> None:
+def info(files: Sequence[Path], reading: Reading, as_json: bool) -> None:
     """Tell what splines FILES hold: degree, points, knots, continuity, domain, bounds.
 
+    FILES may be folders and patterns, and "-" is standard input, with --format.
+
     \b
-    Example:
+    Examples:
       knotwork info drawing.svg
+      knotwork info tracks/ --columns lon,lat
     """
-    found = [(path, kw.read(path)) for path in files]
+    found = [(path, reading.splines(path)) for path in expanded(files)]
     if as_json:
         print_json([{"file": str(path), "splines": [report.facts(s) for s in splines]} for path, splines in found])
         return
@@ -33,6 +38,36 @@ def info(files: Sequence[Path], as_json: bool) -> None:
         points = sum(s.coefficients.size // (s.dim + s.rational) for s in splines)
         heading = f"{path}: {report.counted(len(splines), 'spline')}, {report.counted(points, 'point')}"
         click.echo("\n" * (i > 0) + heading + "\n\n" + report.summary(splines))
+
+
+@main.command(short_help="Tell which files can be read and written.")
+@as_json
+def formats(as_json: bool) -> None:
+    """Tell which formats there are: suffixes, what is read, what is written, options, what they need beyond the core.
+
+    \b
+    Example:
+      knotwork formats --json
+    """
+    from knotwork.files import ELSEWHERE, FORMATS
+
+    if as_json:
+        print_json([dict(each._asdict(), suffixes=list(each.suffixes), options=list(each.options)) for each in FORMATS])
+        return
+    flags = {"closed": "--open/--closed", "name": "--id"}
+    rows = [
+        [
+            " ".join(each.suffixes),
+            each.name,
+            each.reads,
+            each.writes,
+            " ".join(flags.get(name, "--" + name.replace("_", "-")) for name in each.options),
+            each.needs,
+        ]
+        for each in FORMATS
+    ]
+    click.echo(report.table("<<<<<<", ["suffix", "format", "reads", "writes", "options", "needs"], rows))
+    click.echo("\nOther files:\n" + "\n".join(f"  {suffix:<7}{way}" for suffix, way in ELSEWHERE.items()))
 
 
 @main.command(short_help="Tell how far knots can shrink coefficients, and rounding move them.")

@@ -80,6 +80,42 @@ class Progress:
             click.echo("\r\033[K", err=True, nl=False)
 
 
+class Compiling:
+    """Says on a terminal that kernels are compiled, which happens once, and counts the time that it takes."""
+
+    def __init__(self) -> None:
+        self.depth, self.spent, self.begun, self.told = 0, 0.0, 0.0, False
+
+    def __call__(self, begins: bool) -> None:
+        """Take note that compiling begins or ends."""
+        self.depth += 1 if begins else -1
+        if begins and self.depth == 1:
+            self.begun = time.perf_counter()
+            if not self.told and sys.stderr.isatty():
+                click.echo("knotwork: compiling, once; the next call finds it done", err=True)
+            self.told = True
+        elif self.depth == 0:
+            self.spent += time.perf_counter() - self.begun
+
+    def seconds(self) -> float:
+        """Return the time spent so far."""
+        return self.spent
+
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Watch Numba."""
+        from knotwork.arithmetic.kernel import WATCHERS
+
+        WATCHERS.append(self)
+        try:
+            yield
+        finally:
+            WATCHERS.remove(self)
+
+
+compiling = Compiling()
+
+
 class Size(click.FloatRange):
     """A number in a range; NaN, which compares as false with both ends, is not in it."""
 
@@ -133,3 +169,19 @@ def _number(text: str) -> float:
         return float(text)
     except ValueError:
         return math.nan
+
+
+def axes(text: str) -> list[int]:
+    """Return the numbers of two or three coordinates, from 1."""
+    parts = text.split(",")
+    if not all(part.strip().isdigit() and int(part) > 0 for part in parts) or not 2 <= len(parts) <= 3:
+        raise click.BadParameter(f"{text!r}; expected two or three numbers of coordinates, such as 1,3")
+    return [int(part) for part in parts]
+
+
+def box(text: str) -> list[float]:
+    """Return a box: x and y of two corners."""
+    found = [_number(part) for part in text.split(",")]
+    if len(found) != 4 or not all(map(math.isfinite, found)) or not (found[0] < found[2] and found[1] < found[3]):
+        raise click.BadParameter(f"{text!r}; expected x0,y0,x1,y1 with x0 below x1 and y0 below y1")
+    return found

@@ -11,7 +11,8 @@ import click
 
 import knotwork as kw
 from knotwork.cli import report, terminal
-from knotwork.cli.program import FILE, as_json, flip, main, output, print_json, require_writable
+from knotwork.cli.program import FILE, as_json, flip, main, output, require_writable
+from knotwork.cli.streams import STREAM, Reading, expanded, format_for, reading, save
 from knotwork.cli.terminal import Failure
 from knotwork.errors import MissingExtraError
 
@@ -22,36 +23,70 @@ INCHES = terminal.Size(0.1, 1000)
 @click.argument("files", type=FILE, nargs=-1, required=True)
 @click.option("--accuracy", type=float, help="Largest error, in the units of the points, if the format is not exact.")
 @flip
+@reading
+@click.option("--to", metavar="SUFFIX", help="Format of what goes to standard output, such as json.")
 @output
 @as_json
-def convert(files: Sequence[Path], accuracy: float | None, flip: bool, output: Path, as_json: bool) -> None:
+def convert(
+    files: Sequence[Path],
+    accuracy: float | None,
+    flip: bool,
+    reading: Reading,
+    to: str | None,
+    output: Path,
+    as_json: bool,
+) -> None:
     """Write the splines of FILES, all together, to a file of another format.
 
+    FILES may be folders and patterns; "-" is standard input, or as --output standard output.
+
     \b
-    Example:
+    Examples:
       knotwork convert drawing.svg -o drawing.json
+      knotwork convert - --format csv --to svg -o -
     """
     from knotwork.geometry.boxes import upside_down
 
-    require_writable(output)
-    splines = [s for path in files for s in kw.read(path)]
-    written = kw.write(output, [upside_down(s) for s in splines] if flip else splines, accuracy=accuracy)
+    if output != STREAM:
+        require_writable(output)
+    from knotwork.files.formats import encoded
+
+    paths = expanded(files)
+    splines = [s for path in paths for s in reading.splines(path)]
+    suffix = None if output != STREAM else to or format_for(output, paths[0], reading)
+    data, bound = encoded([upside_down(s) for s in splines] if flip else splines, output, suffix, accuracy)
+    save(output, data)
+    quiet = output == STREAM
     if as_json:
-        print_json({"output": str(output), "splines": written.count, "bound": written.bound})
+        told = {"output": str(output), "splines": len(splines), "bound": bound}
+        click.echo(report.as_json(told), err=quiet)
     else:
-        click.echo(f"{report.counted(written.count, 'spline')} written to {output}{report.error_of(written.bound)}")
+        text = f"{report.counted(len(splines), 'spline')} written to {output}{report.error_of(bound)}"
+        click.echo(text, err=quiet)
 
 
 @main.command(short_help="Draw splines.")
 @click.argument("file", type=FILE)
 @click.option("--before", type=FILE, help="File with what the splines were before, drawn pale below.")
-@click.option("--control/--no-control", default=True, help="Draw control points.  [default: yes]")
-@click.option("--knots/--no-knots", default=True, help="Draw knots.  [default: yes]")
+@click.option("--control/--no-control", default=None, help="Draw control points.  [default: unless very many]")
+@click.option("--knots/--no-knots", default=None, help="Draw knots.  [default: unless very many]")
+@click.option("--axes", type=terminal.axes, help="Coordinates to draw, as in 1,3.  [default: the first two or three]")
+@click.option("--zoom", type=terminal.box, metavar="X0,Y0,X1,Y1", help="Draw only what lies in this box of the plane.")
+@reading
 @click.option("--size", type=(INCHES, INCHES), default=(8, 6), metavar="W H", help="In inches.  [default: 8 6]")
 @click.option("--dpi", type=terminal.Size(10, 2400), default=150, help="Dots per inch.  [default: 150]")
 @click.option("-o", "--output", type=FILE, required=True, help="Picture to write: .png, .svg, .pdf, ….")
 def plot(
-    file: Path, before: Path | None, control: bool, knots: bool, size: tuple[float, float], dpi: float, output: Path
+    file: Path,
+    before: Path | None,
+    control: bool | None,
+    knots: bool | None,
+    axes: list[int] | None,
+    zoom: list[float] | None,
+    reading: Reading,
+    size: tuple[float, float],
+    dpi: float,
+    output: Path,
 ) -> None:
     """Draw the splines of FILE, with control points and knots; those of .svg files with y pointing down.
 
@@ -59,9 +94,11 @@ def plot(
     Examples:
       knotwork plot drawing.svg -o drawing.png
       knotwork plot small.svg --before drawing.svg --size 10 10 -o both.pdf
+      knotwork plot coast.csv --zoom 0,0,5,5 -o corner.png
     """
     require_writable(output, _picture_suffixes())
-    splines, under = kw.read(file), kw.read(before) if before else None
+    splines = _shown(reading.splines(file), axes)
+    under = _shown(kw.read(before), axes) if before else None
     if output.exists() and any(path and path.samefile(output) for path in (file, before)):
         raise Failure(f"{output}: the picture would replace the splines; give it another name")
     from knotwork.arithmetic.arrays import require_room
@@ -71,12 +108,31 @@ def plot(
     ax = kw.plot(splines, before=under, control=control, knots=knots)
     if file.suffix.lower() == ".svg" and ax.name != "3d":
         ax.invert_yaxis()  # in SVG, y points down
+    if zoom:
+        if ax.name == "3d":
+            raise click.UsageError("--zoom: the picture is in space; expected a picture of the plane, as by --axes 1,2")
+        ax.set_xlim(zoom[0], zoom[2])
+        ax.set_ylim(*(zoom[1:4:2] if not ax.yaxis_inverted() else zoom[3:0:-2]))
     picture = io.BytesIO()
     figure: Any = ax.figure
     figure.set_size_inches(size)
     figure.savefig(picture, format=output.suffix[1:].lower(), dpi=dpi)
     replace(output, picture.getvalue())
     click.echo(f"{report.counted(len(splines), 'spline')} drawn in {output}")
+
+
+def _shown(splines: Sequence[kw.Spline], axes: list[int] | None) -> list[kw.Spline]:
+    """Return splines with the coordinates that are drawn; of more than three the first three, which is said."""
+    most = max(s.dim for s in splines)
+    if axes is None and most <= 3:
+        return list(splines)
+    if axes is None:
+        click.echo(f"knotwork: note: coordinates 1, 2 and 3 of {most} are drawn; --axes takes others", err=True)
+    chosen = [1, 2, 3] if axes is None else axes
+    for s in splines:
+        if s.dim < max(chosen):
+            raise click.UsageError(f"--axes: coordinate {max(chosen)} asked for; a spline has {s.dim}")
+    return [s.transform([[int(c == a - 1) for c in range(s.dim)] for a in chosen]) for s in splines]
 
 
 def _picture_suffixes() -> list[str]:

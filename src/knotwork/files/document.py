@@ -15,6 +15,7 @@ from knotwork.files.formats import Format, Written, fetched, format_of, require_
 from knotwork.files.places import Place
 from knotwork.files.storage import packed, unpacked
 from knotwork.files.storage import replace as replace_file
+from knotwork.geometry.boxes import extent
 from knotwork.spline import Spline
 
 
@@ -98,6 +99,20 @@ class Document:
             if not isinstance(spline, Spline):
                 raise ParameterError(f"{type(spline).__name__} given for spline {i}; expected a Spline")
         return replace(self, splines=tuple(changed.get(i, spline) for i, spline in enumerate(self.splines)))
+
+    @property
+    def size(self) -> int:
+        """How many bytes the file has."""
+        return len(self._given)
+
+    def extent(self) -> float:
+        """Return the longest side of the box around all splines, as the file shows them."""
+        shown = getattr(self._content, "shown", None)
+        return float(extent(shown() if shown else list(self.splines)))
+
+    def holds(self, changed: Mapping[int, Spline]) -> bool:
+        """Tell whether the file has a place for splines that replace others: for all that its rows say, say."""
+        return bool(getattr(self._content, "holds", lambda _: True)(changed))
 
     def bytes(self, *, even_if_longer: bool = False) -> tuple[builtins.bytes, float]:
         """Return the bytes of the document, and how far rounding moved a point at most, as it is drawn."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,7 +32,9 @@ class Lighter(NamedTuple):
     bound: float
 
 
-def lighter(document: Document, tolerance: float, *, effort: str = "normal", corners: bool = True) -> Lighter:
+def lighter(
+    document: Document, tolerance: float, *, effort: str = "normal", corners: bool = True, precision: int | None = None
+) -> Lighter:
     """Return a drawing whose paths have few segments, each within a distance of its shape.
 
     Parameters
@@ -46,6 +49,8 @@ def lighter(document: Document, tolerance: float, *, effort: str = "normal", cor
         How long to search.
     corners : bool
         Whether joints where a curve turns by more than 10 degrees stay exactly.
+    precision : int, optional
+        Digits after the point, instead of as many as the tolerance needs; what they move counts in the bound.
 
     Raises
     ------
@@ -58,13 +63,15 @@ def lighter(document: Document, tolerance: float, *, effort: str = "normal", cor
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
     places = document.places
     free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
-    accuracy = {i: ROUNDED * tolerance / places[i].scale for i in free}
+    grid = None if precision is None else 10.0**-precision / math.sqrt(2)
+    accuracy = {i: grid or ROUNDED * tolerance / places[i].scale for i in free}
+    room = {i: min(accuracy[i] * places[i].scale / tolerance, 0.5) for i in free}
     nets = {i: _cubics(document.splines[i], i) for i in free}
     changed: dict[int, Spline] = {}
     counts = {i: len(net) for i, net in nets.items()}
     worst = 0.0
     for i in (i for i in free if places[i].straight):
-        reduction = reduce(document.splines[i], (1 - ROUNDED) * tolerance / places[i].scale, **POLYLINE, effort=effort)
+        reduction = reduce(document.splines[i], (1 - room[i]) * tolerance / places[i].scale, **POLYLINE, effort=effort)
         changed[i], counts[i] = reduction.spline, len(reduction.spline.space.breaks) - 1
         worst = max(worst, reduction.bound * places[i].scale)
     curved = [i for i in free if not places[i].straight]
@@ -72,7 +79,7 @@ def lighter(document: Document, tolerance: float, *, effort: str = "normal", cor
         alike = [i for i in curved if places[i].scale == scale]
         at = np.cumsum([0, *(len(nets[i]) for i in alike)])
         closed = [places[i].closed for i in alike]
-        allowed = (1 - ROUNDED) * tolerance / scale
+        allowed = (1 - room[alike[0]]) * tolerance / scale
         found = reduce_bezier(
             np.concatenate([nets[i] for i in alike]), at, allowed, closed=closed, effort=effort,
             angle=CORNER if corners else None,

@@ -42,6 +42,13 @@ class Table:
     #: whether every column is a coordinate, so that points that are new can be written in the same form
     complete: bool
 
+    def holds(self, changed: Mapping[int, Spline]) -> bool:
+        """Tell whether points that are new can be written: where all columns are coordinates."""
+        return self.complete or all(
+            {*map(tuple, _vertices(s, f"splines[{i}]").tolist())} <= {*map(tuple, self.points[i].tolist())}
+            for i, s in changed.items()
+        )
+
     def rewritten(
         self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
     ) -> tuple[bytes, float]:

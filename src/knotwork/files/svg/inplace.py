@@ -58,6 +58,16 @@ class Drawing:
     outlines: tuple[Outline, ...]
     splines: tuple[Spline, ...]
     places: tuple[Place, ...]
+    #: where each element is drawn, once for each time
+    maps: tuple[tuple[int, Affine], ...]
+
+    def shown(self) -> list[Spline]:
+        """Return the splines as they are drawn, as often as they are."""
+        found = []
+        for k, (a, b, c, d, e, f) in self.maps:
+            drawn = [self.splines[i] for i in self.outlines[k].splines if i >= 0]
+            found += [s.transform([[a, c], [b, d]], [e, f]) for s in drawn]
+        return found
 
     def rewritten(
         self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
@@ -102,8 +112,10 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
     drawn = walk(data, remark)
     once: dict[int, tuple[Element, DrawnAt]] = {}
     scales: dict[int, float] = {}
+    drawn_by: list[tuple[int, Affine]] = []
     for element, drawn_at in list(drawn.shapes(name)):
         once.setdefault(id(element), (element, drawn_at))
+        drawn_by.append((id(element), drawn_at.map))
         scales[id(element)] = max(scales.get(id(element), 0.0), _scale(drawn_at.map))
     outlines: list[Outline] = []
     splines: list[Spline] = []
@@ -136,7 +148,9 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
                     )
                 )
         outlines.append(Outline(element, stands, corners, subpaths, indices, scales[key]))
-    return Drawing(data, tuple(outlines), tuple(splines), tuple(places))
+    position = {key: k for k, key in enumerate(once)}
+    maps = tuple((position[key], place) for key, place in drawn_by)
+    return Drawing(data, tuple(outlines), tuple(splines), tuple(places), maps)
 
 
 def _scale(place: Affine) -> float:

@@ -1,0 +1,116 @@
+"""The command that finds splines with few knots: drawings in place, tables as tables, others one by one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+import knotwork as kw
+from knotwork.cli import report, terminal
+from knotwork.cli.jobs import Job, job, written_to
+from knotwork.cli.program import flip, main
+from knotwork.cli.streams import STREAM, save
+from knotwork.cli.terminal import Tolerance, compiling
+
+
+@main.command(short_help="Find splines with few knots within a tolerance.")
+@job
+@click.option(
+    "-t",
+    "--tolerance",
+    type=terminal.tolerance,
+    required=True,
+    help="Largest error: a length, or as in 0.1% of the extent.",
+)
+@click.option("-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree to this one first.")
+@click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="At equal parameters, or of shapes.")
+@click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), help="What shapes become.")
+@click.option("--effort", type=click.Choice(["fast", "normal", "best"]), default="normal", help="[default: normal]")
+@click.option("--keep", type=click.Choice(["corners", "lines"]), multiple=True, help="What stays; repeatable.")
+@click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
+@click.option("--precision", type=click.IntRange(-6, 17), help="Digits after the point in a drawing.")
+@flip
+def reduce(
+    job: Job,
+    tolerance: Tolerance,
+    degree: int | None,
+    distance: str | None,
+    form: str | None,
+    effort: str,
+    keep: Sequence[str],
+    even_if_longer: bool,
+    precision: int | None,
+    flip: bool,
+) -> None:
+    """Find splines with few knots within a tolerance of those of FILE.
+
+    The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file.
+    The bound in the report is proven. Drawings and tables carry no parametrisation: their shapes are compared unless
+    --distance or --degree say otherwise. An SVG drawing comes back as it was but for its paths, which get few segments
+    and the shortest text; a table stays a table of fewer points. Other files are compared at equal parameters.
+
+    \b
+    Examples:
+      knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
+      knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
+    """
+
+    from knotwork.files.formats import format_of
+    from knotwork.geometry.boxes import upside_down
+
+    def work(file: Path, output: Path | None) -> dict[str, Any] | None:
+        kind = job.reading.kind(file)
+        drawn = kind.module == "svg" and (output is None or output == STREAM or format_of(output) is kind)
+        if drawn and distance != "parametric" and form in (None, "bezier") and degree is None and not flip:
+            return _lighter(job, file, output, tolerance, effort, even_if_longer, precision)
+        shapes = distance is None and degree is None and kind.shapes
+        made = form or ("polyline" if shapes and kind.module != "svg" else "spline")
+        how = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
+
+        def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, Any]:
+            for axis, given in enumerate(spline.degree):
+                spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
+            kept: Any = (list(keep) if how == "geometric" else keep[0]) if keep else None
+            reduction = kw.reduce(spline, allowed, distance=how, form=made, effort=effort, keep=kept, progress=progress)
+            return upside_down(reduction.spline) if flip else reduction.spline, reduction.bound
+
+        return job.one(file, output, change, tolerance, "reducing", even_if_longer=even_if_longer)
+
+    job.each(work)
+
+
+def _lighter(
+    job: Job,
+    file: Path,
+    output: Path | None,
+    tolerance: Tolerance,
+    effort: str,
+    even_if_longer: bool,
+    precision: int | None,
+) -> dict[str, Any] | None:
+    """Reduce a drawing in place, and say what became of it."""
+    from knotwork.files.lighter import lighter
+
+    document = job.reading.document(file)
+    start = time.perf_counter() - compiling.seconds()
+    allowed = tolerance.value * document.extent() if tolerance.relative else tolerance.value
+    found = lighter(document, allowed, effort=effort, precision=precision)
+    data, rounded = found.document.packed(output or file, even_if_longer=even_if_longer)
+    seconds = time.perf_counter() - compiling.seconds() - start
+    bound = found.bound + rounded
+    if output:
+        save(output, data)
+    sizes = (document.size, len(data))
+    if job.as_json:
+        told = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed, "bound": bound}
+        return told | {"distance": "geometric", "segments": list(found.segments), "bytes": list(sizes)}
+    before, after = found.segments
+    job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g} between shapes")
+    job.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
+    job.echo(f"no point is farther than {report.upward(bound):.6g} from where it was: proven, rounding included")
+    job.echo(written_to(output, 0.0))
+    return None
