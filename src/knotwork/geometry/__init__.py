@@ -1,7 +1,22 @@
 """What knot insertion tells of a curve or a surface: boxes, zeros, lengths; all certified by control points."""
 
 from knotwork.geometry.local_shape import curvature, frame, normals
+from knotwork.geometry.measures import Measured, area, by_length, centroid, length
 from knotwork.geometry.roots import Zeros, zeros
 from knotwork.geometry.turning import corners, extrema, inflections
 
-__all__ = ["Zeros", "corners", "curvature", "extrema", "frame", "inflections", "normals", "zeros"]
+__all__ = [
+    "Measured",
+    "Zeros",
+    "area",
+    "by_length",
+    "centroid",
+    "corners",
+    "curvature",
+    "extrema",
+    "frame",
+    "inflections",
+    "length",
+    "normals",
+    "zeros",
+]
