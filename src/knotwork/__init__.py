@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from knotwork.files import Document, Written, open, read, write
     from knotwork.geometry import (
         Measured,
+        Polyline,
         Zeros,
         area,
         by_length,
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
         corners,
         curvature,
         extrema,
+        flatten,
         frame,
         inflections,
         length,
@@ -80,6 +82,7 @@ __all__ = [
     "MissingExtraError",
     "ParameterError",
     "PointError",
+    "Polyline",
     "PolynomialPieces",
     "Reduction",
     "RoundingWarning",
@@ -107,6 +110,7 @@ __all__ = [
     "extraction",
     "extrema",
     "fit",
+    "flatten",
     "frame",
     "from_bezier",
     "from_pieces",
@@ -169,6 +173,7 @@ _PARTS = {
     "files": ("Document", "Written", "open", "read", "write"),
     "geometry": (
         "Measured",
+        "Polyline",
         "Zeros",
         "area",
         "by_length",
@@ -176,6 +181,7 @@ _PARTS = {
         "corners",
         "curvature",
         "extrema",
+        "flatten",
         "frame",
         "inflections",
         "length",

@@ -1,5 +1,6 @@
 """What knot insertion tells of a curve or a surface: boxes, zeros, lengths; all certified by control points."""
 
+from knotwork.geometry.chords import Polyline, flatten
 from knotwork.geometry.local_shape import curvature, frame, normals
 from knotwork.geometry.measures import Measured, area, by_length, centroid, length
 from knotwork.geometry.roots import Zeros, zeros
@@ -7,6 +8,7 @@ from knotwork.geometry.turning import corners, extrema, inflections
 
 __all__ = [
     "Measured",
+    "Polyline",
     "Zeros",
     "area",
     "by_length",
@@ -14,6 +16,7 @@ __all__ = [
     "corners",
     "curvature",
     "extrema",
+    "flatten",
     "frame",
     "inflections",
     "length",

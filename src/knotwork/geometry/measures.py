@@ -10,23 +10,20 @@ control polygon, and halves bring these together.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, real_numbers
 from knotwork.errors import ParameterError, PointError
-from knotwork.geometry.bezier import halves, product
-from knotwork.geometry.pieces import UNIT, Pieces, coordinates
+from knotwork.geometry.bezier import product
+from knotwork.geometry.pieces import UNIT, Pieces, coordinates, halved
 from knotwork.geometry.turning import require_curve
 from knotwork.insertion.pieces import trim
 from knotwork.spline import Spline
 
 #: by how much s and w may differ from their means, and terms of their series: what is left is below 2⁻⁵³
 NEAR, TERMS = 1 / 16, 12
-#: halvings at most
-HALVINGS = 50
 #: nodes of Gauss's formula
 GAUSS = 8
 #: Newton's steps towards a length
@@ -223,7 +220,7 @@ def _closed(curve: Spline) -> tuple[list[Pieces], Pieces | None]:
     H, _ = coordinates(curve)
     if not curve.rational:
         return H, None
-    H, _, _ = _halved([Pieces(h.c.astype(np.float64), h.e.astype(np.float64)) for h in H], _weights_near)
+    H, _, _ = halved([Pieces(h.c.astype(np.float64), h.e.astype(np.float64)) for h in H], _weights_near)
     return H[:-1], H[-1]
 
 
@@ -292,34 +289,6 @@ def _weights_near(H: list[Pieces]) -> Array:
     return _near(H[-1])
 
 
-def _halved(H: list[Pieces], enough: Callable[[list[Pieces]], Array]) -> tuple[list[Pieces], Array, Array]:
-    """Halve pieces until `enough` says so; return them, which piece each is of, where it starts and how long it is."""
-    count = len(H[0].c)
-    place: Array = np.stack([np.arange(count), np.zeros(count), np.ones(count)], axis=1)
-    done: list[tuple[list[Pieces], Array]] = []
-    for level in range(HALVINGS + 1):
-        good = enough(H) if level < HALVINGS else np.ones(len(place), bool)
-        done.append(([Pieces(h.c[good], h.e[good]) for h in H], place[good]))
-        H, place = [Pieces(h.c[~good], h.e[~good]) for h in H], place[~good]
-        if not len(place):
-            break
-        split = []
-        for h in H:
-            n = h.c.shape[1] - 1
-            c = np.stack(halves(h.c), axis=1).reshape(-1, n + 1)
-            e = np.repeat(h.e.max(axis=1) + n * UNIT * abs(h.c).max(axis=1), 2)
-            split.append(Pieces(c, np.repeat(e[:, None], n + 1, 1)))
-        H, place = split, np.repeat(place, 2, axis=0)
-        place[:, 2] /= 2
-        place[1::2, 1] += place[1::2, 2]
-    place = np.concatenate([p for _, p in done])
-    order = np.lexsort((place[:, 1], place[:, 0]))
-    pieces = [
-        Pieces(*(np.concatenate([getattr(D[k], x) for D, _ in done])[order] for x in "ce")) for k in range(len(H))
-    ]
-    return pieces, place[order, 0].astype(int), place[order, 1:]
-
-
 def _lengths(curve: Spline) -> tuple[Array, Array, Array, Array]:
     """Return the lengths of parts of a curve, how far they may be off, and between which parameters they are."""
     H, breaks = coordinates(curve)
@@ -346,7 +315,7 @@ def _lengths(curve: Spline) -> tuple[Array, Array, Array, Array]:
         done: Array = good | (polygon <= off)
         return done
 
-    H, piece, place = _halved(H, enough)
+    H, piece, place = halved(H, enough)
     s, (chord, polygon, off) = _speed(H, curve.rational), chords(H)
     usable = _near(s) & (_weights_near(H) if curve.rational else True)
     values, errors = (chord + polygon) / 2, (polygon - chord) / 2 + off

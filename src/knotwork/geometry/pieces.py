@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.geometry.bezier import product
+from knotwork.geometry.bezier import halves, product
 from knotwork.insertion.pieces import to_bezier
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -16,6 +17,8 @@ from knotwork.spline import Spline
 UNIT = 2.0**-53
 #: what underflow may take from a number, with room to spare
 TINY = 2.0**-1040
+#: halvings at most
+HALVINGS = 50
 
 
 class Pieces(NamedTuple):
@@ -98,3 +101,31 @@ def unrolling(space: SplineSpace) -> float:
     t = space.unrolled.knots
     gaps = np.diff(t)
     return float(space.degree * 2.0**-49 * np.abs(t[[0, -1]]).max() / gaps[gaps > 0].min())
+
+
+def halved(H: list[Pieces], enough: Callable[[list[Pieces]], Array]) -> tuple[list[Pieces], Array, Array]:
+    """Halve pieces until `enough` says so; return them, which piece each is of, where it starts and how long it is."""
+    count = len(H[0].c)
+    place: Array = np.stack([np.arange(count), np.zeros(count), np.ones(count)], axis=1)
+    done: list[tuple[list[Pieces], Array]] = []
+    for level in range(HALVINGS + 1):
+        good = enough(H) if level < HALVINGS else np.ones(len(place), bool)
+        done.append(([Pieces(h.c[good], h.e[good]) for h in H], place[good]))
+        H, place = [Pieces(h.c[~good], h.e[~good]) for h in H], place[~good]
+        if not len(place):
+            break
+        split = []
+        for h in H:
+            n = h.c.shape[1] - 1
+            c = np.stack(halves(h.c), axis=1).reshape(-1, n + 1)
+            e = np.repeat(h.e.max(axis=1) + n * UNIT * abs(h.c).max(axis=1), 2)
+            split.append(Pieces(c, np.repeat(e[:, None], n + 1, 1)))
+        H, place = split, np.repeat(place, 2, axis=0)
+        place[:, 2] /= 2
+        place[1::2, 1] += place[1::2, 2]
+    place = np.concatenate([p for _, p in done])
+    order = np.lexsort((place[:, 1], place[:, 0]))
+    pieces = [
+        Pieces(*(np.concatenate([getattr(D[k], x) for D, _ in done])[order] for x in "ce")) for k in range(len(H))
+    ]
+    return pieces, place[order, 0].astype(int), place[order, 1:]
