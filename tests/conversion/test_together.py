@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from fractions import Fraction
 
 import numpy as np
@@ -79,6 +80,47 @@ def test_a_gap_is_closed_within_a_tolerance_or_named():
             kw.join(*wrong)
 
 
+@given(strategies.curves(rational=None, periodic=False, degrees=st.integers(1, 3)), st.integers(2, 5))
+def test_many_parts_are_joined_as_two_are(c, count):
+    """All at once: the knots that the curve had, whatever the number of parts."""
+    c = kw.clamp(c)
+    a, b = c.space.domain
+    cuts = [a + (b - a) * F(k, count) for k in range(count + 1)]
+    found = kw.join(kw.trim(c, x, y) for x, y in itertools.pairwise(cuts))
+    assert found.bound == 0
+    for x in [a + (b - a) * F(k, 13) for k in range(14)]:
+        assert (found.spline(x) == c(x)).all()
+    if all(c.space.multiplicity(x) <= c.space.degree for x in cuts[1:-1]):
+        assert set(found.spline.space.knots.tolist()) <= {*c.space.knots.tolist()}
+
+
+def test_the_tolerance_is_for_all_joints_together():
+    """At 0.1 each joint may be as smooth as it is alone; from 0.2 on together they would change too much."""
+    rng = np.random.default_rng(5)
+    corners = rng.standard_normal((9, 2)).cumsum(axis=0)
+    curves = []
+    for k, (p, q) in enumerate(itertools.pairwise(corners)):
+        inner = [p + (q - p) * s + 0.05 * rng.standard_normal(2) for s in (1 / 3, 2 / 3)]
+        curves.append(kw.curve([p, *inner, q]).with_domain(k, k + 1))
+    before = 4 + 3 * 7
+    for tolerance in (0, 0.05, 0.1, 0.2, 0.5, 0.8):
+        found = kw.join(curves, tolerance=tolerance)
+        assert found.bound <= max(tolerance, 1e-13)
+        assert len(found.spline.points) <= before
+        before = len(found.spline.points)
+        for k, c in enumerate(curves):
+            u = np.linspace(k, k + 1, 50)[:-1]
+            assert np.abs(found.spline(u) - c(u)).max() <= found.bound
+    assert before < 10
+
+
+def test_numbers_and_points_of_one_coordinate_are_joined():
+    numbers, points = kw.curve([0.0, 1], 1), kw.curve([[1.0], [2.0]], 1)
+    assert kw.join(numbers, points).spline.points.tolist() == [[0], [2]]
+    assert kw.join(numbers, kw.curve([[1.0], [2.0]], 1, weights=[1, 2])).spline.dim == 1
+    assert kw.join(numbers, kw.curve([1, 2j], 1)).spline.points.tolist() == [0, 1, 2j]
+
+
 def test_knots_inside_stay_where_they_are():
     a = kw.insert(kw.curve([[0, 0], [1, 1], [2, 0], [3, 1]]), 0.5)  # not needed, but the user's
     b = kw.curve([[3, 1], [4, 2], [5, 5]], 2)
@@ -143,6 +185,17 @@ def test_the_seam_moves_and_values_stay(c, data):
     for k in range(9):
         x = a + (b - a) * F(k, 9)
         assert (moved(x) == c(x)).all()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_the_seam_at_a_knot_some_turns_away_adds_none(degree):
+    """Wrapping a parameter around rounds it: what is that near to a knot is the knot."""
+    c = kw.curve(np.random.default_rng(1).standard_normal((7, 2)), degree, np.arange(8) / 7, periodic=True)
+    u = np.linspace(0, 1, 40)
+    for k in range(-20, 28):
+        moved = c.with_seam(k / 7)
+        assert len(moved.points) == 7
+        np.testing.assert_allclose(moved(u), c(u), atol=1e-13)
 
 
 def test_no_seam():

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,9 +14,10 @@ from knotwork.conversion.elevation import elevate
 from knotwork.conversion.face import Conversion, convert
 from knotwork.conversion.nesting import breaks_and_copies, common_refinement
 from knotwork.conversion.oslo import require_convertible
-from knotwork.conversion.smoothing import smoothest
+from knotwork.conversion.smoothing import smoothest, within
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.pieces import clamp
+from knotwork.knots import distinct
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -163,20 +165,29 @@ def join(*curves: Spline, tolerance: Any = 0) -> Conversion[Spline]:
         if c.dim != chain[0].dim:
             raise PointError(f"points in {chain[0].dim}-D and {c.dim}-D given; expected as many coordinates")
     degree, rational = max(c.space.degree for c in chain), any(c.rational for c in chain)
-    joined = _ready(chain[0], degree, rational)
-    joints = []
-    for c in chain[1:]:
-        joints.append(joined.space.knots[-1:])
-        joined = _appended(joined, _ready(c, degree, rational))
-    found = Conversion(joined, 0 * rounding(joined).max(), True, "joining")
-    for k, joint in enumerate(joints):
-        found = smoothest(joined, found.spline, 0, joint, tolerance, f"the end of curve {k} and the start of the next")
+    if any(not c.scalar for c in chain):
+        chain = [Spline.trusted(c.spaces, c.coefficients[:, None]) if c.scalar else c for c in chain]
+    parts = list(itertools.accumulate((_ready(c, degree, rational) for c in chain), _following))
+    joined, joints = _end_to_end(parts), np.array([c.space.knots[0] for c in parts[1:]], parts[0].space.knots.dtype)
+    names = [f"the end of curve {k} and the start of the next" for k in range(len(joints))]
+    copies = []
+    for k in range(len(joints)):  # each joint for itself, and all at once
+        pair, joint = _end_to_end(parts[k : k + 2]), joints[k : k + 1]
+        alone = smoothest(pair, pair, 0, joint, tolerance, names[k])
+        copies.append(alone.spline.space.multiplicity(joints[k]))
+    values, counts = distinct(joined.space.knots)
+    counts[np.searchsorted(values, joints)] = copies
+    found = within(joined, joined, SplineSpace(degree, np.repeat(values, counts)), 0, tolerance, "the curves")
+    if found is None:  # together they change too much: one after the other, so that each knows of those before
+        found = Conversion(joined, 0 * rounding(joined).max(), True, "joining")
+        for k, name in enumerate(names):
+            found = smoothest(joined, found.spline, 0, joints[k : k + 1], tolerance, name)
     return found
 
 
 def _listed(splines: Any, what: str) -> list[Spline]:
     """Return splines in one arithmetic, or raise."""
-    given = list(splines) if isinstance(splines, list | tuple) else [splines]
+    given = list(splines) if isinstance(splines, Iterable) and not isinstance(splines, Spline) else [splines]
     if not given or not all(isinstance(s, Spline) for s in given):
         raise ParameterError(f"{what} takes splines; {[type(s).__name__ for s in given]} given")
     if len({len(s.spaces) for s in given}) > 1:
@@ -187,19 +198,24 @@ def _listed(splines: Any, what: str) -> list[Spline]:
 
 
 def _ready(c: Spline, degree: int, rational: bool) -> Spline:
-    """Return a curve clamped, of a degree, and rational if wanted; always with an axis of coordinates."""
+    """Return a curve clamped, of a degree, and rational if wanted."""
     c = elevate(clamp(c), degree - c.space.degree)
     return Spline.trusted(c.spaces, c.homogeneous, True) if rational and not c.rational else c
 
 
-def _appended(c: Spline, d: Spline) -> Spline:
-    """Return the curve that jumps from the end of one to the start of another."""
-    n, start = c.space.degree, c.space.domain[1]
+def _following(c: Spline, d: Spline) -> Spline:
+    """Return d over the domain that starts where c ends, with the weight that c has there."""
+    start = c.space.domain[1]
     a, b = d.space.domain
     if a != start:
         d = d.with_domain(start, start + (b - a))
     P, Q = c.coefficients, d.coefficients
-    if c.rational:
-        Q = Q * (P[-1, -1] / Q[0, -1])
-    knots = np.concatenate([c.space.knots, d.space.knots[n + 1 :]])
-    return Spline.trusted((SplineSpace(n, knots),), np.concatenate([P, Q]), c.rational)
+    return d.with_axis(0, d.space, Q * (P[-1, -1] / Q[0, -1])) if c.rational else d
+
+
+def _end_to_end(curves: list[Spline]) -> Spline:
+    """Return the curve that jumps from the end of each of some curves to the start of the next."""
+    n = curves[0].space.degree
+    knots = np.concatenate([curves[0].space.knots, *(c.space.knots[n + 1 :] for c in curves[1:])])
+    points = np.concatenate([c.coefficients for c in curves])
+    return Spline.trusted((SplineSpace(n, knots),), points, curves[0].rational)

@@ -168,7 +168,8 @@ def require_convertible(space: SplineSpace, target: SplineSpace) -> None:
         )
     if space.domain != target.domain:
         raise KnotError(
-            f"from the domain {list(space.domain)} to {list(target.domain)}: expected equal domains; trim first"
+            f"from the domain {list(space.domain)} to {list(target.domain)}: expected equal domains; trim or "
+            f"with_domain makes them so"
         )
 
 

@@ -12,6 +12,7 @@ from knotwork.errors import ParameterError
 from knotwork.evaluation import parameters
 from knotwork.insertion.face import insert
 from knotwork.insertion.pieces import clamp
+from knotwork.knots import nearest_knot
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline, require_spline
 from knotwork.unrolled import moved
@@ -69,6 +70,10 @@ def with_seam(spline: Spline, u: Any, axis: int) -> Spline:
     if len(x) != 1:
         raise ParameterError(f"{len(x)} parameters given; expected one")
     start, end = space.domain
+    if not space.exact and not start <= (given := np.asarray(u, np.float64).item()) <= end:
+        near = nearest_knot(space.knots, x[0])  # a parameter that was wrapped around was rounded
+        if abs(near - x[0]) <= 4 * np.spacing(max(abs(given), abs(start), abs(end))):
+            x = near.reshape(1)
     if x[0] in (start, end):
         return spline
     if not space.multiplicity(x[0]):

@@ -33,19 +33,29 @@ def smoothest(
     space = spline.spaces[axis]
     least = 1 if space.periodic and knot[0] == space.domain[0] else 0
     for copies in range(least, max(space.degree, 1) + 1):
-        target = _with_copies(space, knot, copies)
-        for how in STEPS:
-            found = converted(spline, target, axis, how)
-            if found is None:
-                continue
-            change = measured(original, found.spline)
-            if allowed.admits(change):
-                allowed.require(change, f"joining {what}")
-                return concluded(original, found.spline, "joining", change)
+        found = within(original, spline, _with_copies(space, knot, copies), axis, allowed, what)
+        if found is not None:
+            return found
     at = int(np.searchsorted(space.knots, knot[0], "left"))
     P = np.moveaxis(spline.points, axis, 0)
     gap = np.abs(P[(at - 1) % len(P)] - P[at]).max()
     raise ParameterError(f"{what} are {float(gap):.6g} apart; tolerance {allowed.given.tolist()} given")
+
+
+def within(
+    original: Spline, spline: Spline, target: SplineSpace, axis: int, tolerance: Any, what: str
+) -> Conversion[Spline] | None:
+    """Return a spline over another space if it is within a tolerance, a number or `Tolerance`, of the original."""
+    allowed = tolerance if isinstance(tolerance, Tolerance) else Tolerance(original, tolerance)
+    for how in STEPS:
+        found = converted(spline, target, axis, how)
+        if found is None:
+            continue
+        change = measured(original, found.spline)
+        if allowed.admits(change):
+            allowed.require(change, f"joining {what}")
+            return concluded(original, found.spline, "joining", change)
+    return None
 
 
 def converted(spline: Spline, target: SplineSpace, axis: int, how: How = "auto") -> Conversion[Spline] | None:
