@@ -25,7 +25,15 @@ PARTS = 1 << 26
 
 
 class Polyline(NamedTuple):
-    """A polyline whose vertices are on a curve."""
+    """A polyline whose vertices are on a curve.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> line = kw.flatten(kw.curve([[0, 0], [2, 4], [4, 0]], degree=2), 0.1)
+    >>> line.points[[0, -1]].tolist(), line.bound <= 0.1
+    ([[0.0, 0.0], [4.0, 0.0]], True)
+    """
 
     #: shape (m, d)
     points: Array

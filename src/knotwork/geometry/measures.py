@@ -31,7 +31,15 @@ STEPS = 40
 
 
 class Measured(NamedTuple):
-    """What was measured, and a bound on its error, rounding included."""
+    """What was measured, and a bound on its error, rounding included.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> found = kw.length(kw.curve([[0, 0], [3, 4]], degree=1))
+    >>> abs(found.value - 5) <= found.bound < 1e-12
+    True
+    """
 
     value: Any
     bound: Any

@@ -34,7 +34,15 @@ Exact = Callable[[Any], Array]
 
 
 class Zeros(NamedTuple):
-    """The zeros of a spline function, in order: isolated ones, and stretches where it is zero throughout."""
+    """The zeros of a spline function, in order: isolated ones, and stretches where it is zero throughout.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> found = kw.zeros(kw.curve([-1, 1, -1], degree=2))
+    >>> found.values.tolist(), found.multiplicity.tolist(), found.change.tolist()
+    ([0.5], [2], [0])
+    """
 
     #: ends of the interval that encloses each isolated zero; equal if it is known exactly
     low: Array
