@@ -16,6 +16,9 @@ from knotwork.cli.program import flip, main
 from knotwork.cli.streams import STREAM, save
 from knotwork.cli.terminal import Tolerance, compiling
 
+#: formats that are written in place with few segments, and what these are
+IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
+
 
 @main.command(short_help="Find splines with few knots within a tolerance.")
 @job
@@ -33,6 +36,7 @@ from knotwork.cli.terminal import Tolerance, compiling
 @click.option("--keep", type=click.Choice(["corners", "lines"]), multiple=True, help="What stays; repeatable.")
 @click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
 @click.option("--precision", type=click.IntRange(-6, 17), help="Digits after the point in a drawing.")
+@click.option("--shared-borders", is_flag=True, help="Borders that areas of a map share stay shared.")
 @flip
 def reduce(
     job: Job,
@@ -44,6 +48,7 @@ def reduce(
     keep: Sequence[str],
     even_if_longer: bool,
     precision: int | None,
+    shared_borders: bool,
     flip: bool,
 ) -> None:
     """Find splines with few knots within a tolerance of those of FILE.
@@ -51,12 +56,14 @@ def reduce(
     The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file.
     The bound in the report is proven. Drawings and tables carry no parametrisation: their shapes are compared unless
     --distance or --degree say otherwise. An SVG drawing comes back as it was but for its paths, which get few segments
-    and the shortest text; a table stays a table of fewer points. Other files are compared at equal parameters.
+    and the shortest text; a map or a track as it was but for the points of its lines; a table stays a table of fewer
+    points. Other files are compared at equal parameters.
 
     \b
     Examples:
       knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
+      knotwork reduce countries.geojson --shared-borders -t 0.05 -o small.geojson
     """
 
     from knotwork.files.formats import format_of
@@ -64,18 +71,21 @@ def reduce(
 
     def work(file: Path, output: Path | None) -> dict[str, Any] | None:
         kind = job.reading.kind(file)
-        drawn = kind.module == "svg" and (output is None or output == STREAM or format_of(output) is kind)
-        if drawn and distance != "parametric" and form in (None, "bezier") and degree is None and not flip:
-            return _lighter(job, file, output, tolerance, effort, even_if_longer, precision)
+        drawn = kind.module in IN_PLACE and (output is None or output == STREAM or format_of(output) is kind)
+        if drawn and distance != "parametric" and form in (None, IN_PLACE[kind.module]) and degree is None and not flip:
+            how = {"effort": effort, "precision": precision, "shared": shared_borders}
+            return _lighter(job, file, output, tolerance, even_if_longer, **how)
         shapes = distance is None and degree is None and kind.shapes
         made = form or ("polyline" if shapes and kind.module != "svg" else "spline")
-        how = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
+        between = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
 
         def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, Any]:
             for axis, given in enumerate(spline.degree):
                 spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
-            kept: Any = (list(keep) if how == "geometric" else keep[0]) if keep else None
-            reduction = kw.reduce(spline, allowed, distance=how, form=made, effort=effort, keep=kept, progress=progress)
+            kept: Any = (list(keep) if between == "geometric" else keep[0]) if keep else None
+            reduction = kw.reduce(
+                spline, allowed, distance=between, form=made, effort=effort, keep=kept, progress=progress
+            )
             return upside_down(reduction.spline) if flip else reduction.spline, reduction.bound
 
         return job.one(file, output, change, tolerance, "reducing", even_if_longer=even_if_longer)
@@ -88,9 +98,8 @@ def _lighter(
     file: Path,
     output: Path | None,
     tolerance: Tolerance,
-    effort: str,
     even_if_longer: bool,
-    precision: int | None,
+    **how: Any,
 ) -> dict[str, Any] | None:
     """Reduce a drawing in place, and say what became of it."""
     from knotwork.files.lighter import lighter
@@ -98,7 +107,7 @@ def _lighter(
     document = job.reading.document(file)
     start = time.perf_counter() - compiling.seconds()
     allowed = tolerance.value * document.extent() if tolerance.relative else tolerance.value
-    found = lighter(document, allowed, effort=effort, precision=precision)
+    found = lighter(document, allowed, **how)
     data, rounded = found.document.packed(output or file, even_if_longer=even_if_longer)
     seconds = time.perf_counter() - compiling.seconds() - start
     bound = found.bound + rounded

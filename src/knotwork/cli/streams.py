@@ -64,6 +64,7 @@ _OPTIONS = (
     click.option("--skip", type=click.IntRange(0), help="Lines at the start of a table to pass over."),
     click.option("--split-at", metavar="NAME=VALUE", help="Rows that end a polyline of a table, as in pressure=0."),
     click.option("--open/--closed", "open_", default=None, help="Whether polylines are closed.  [as they end]"),
+    click.option("--extras", type=click.Choice(["interpolate", "drop"]), help="Elevation and time of new points."),
     click.option("--id", "name", metavar="NAME", help="Id of the one element of a drawing to take."),
 )
 
@@ -80,6 +81,7 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
         split_at: str | None,
         open_: bool | None,
         name: str | None,
+        extras: str | None,
         **rest: Any,
     ) -> Any:
         asked = {
@@ -88,6 +90,7 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
             "split_at": split_at,
             "closed": None if open_ is None else not open_,
             "name": name,
+            "extras": extras,
         }
         options = {key: value for key, value in asked.items() if value is not None}
         return command(*args, reading=Reading(format_, options), **rest)

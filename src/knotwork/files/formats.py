@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 import os
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -56,6 +57,10 @@ FORMATS = (
     Format(
         "svg", "SVG drawing", (".svg", ".svgz"), "paths and shapes, in place", "plane curves", ("name",), shapes=True
     ),
+    Format("geojson", "GeoJSON map", (".geojson",), "lines and rings, in place", "curves of degree 1", shapes=True),
+    Format(
+        "gpx", "GPX track", (".gpx",), "tracks and routes, in place", "curves of degree 1", ("extras",), shapes=True
+    ),
 )
 SUFFIXES = {suffix: each for each in FORMATS for suffix in each.suffixes}
 #: where files of other suffixes can come from
@@ -74,6 +79,8 @@ ELSEWHERE = {
     ".tcx": "turn it into GPX: gpsbabel -i gtrnctr -f file.tcx -o gpx -F file.gpx",
     ".dwg": "save it as DXF",
 }
+#: what tells GeoJSON from other JSON
+_MAP = re.compile(rb'"type"\s*:\s*"(FeatureCollection|Feature|GeometryCollection|(Multi)?(LineString|Polygon))"')
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +154,7 @@ def read(path: str | os.PathLike[str], *, format: str | None = None, **options: 
 
 def fetched(path: Path, format: str | None) -> bytes:
     """Return the bytes of a file, unless its name says that they cannot be read."""
-    if format is not None or path.suffix.lower() in ELSEWHERE:
+    if format is not None or path.suffix.lower() in ELSEWHERE or not path.exists():
         format_of(path, format)
     return fetch(path)
 
@@ -236,6 +243,8 @@ def format_of(path: Path, format: str | None = None, data: bytes | None = None) 
     """Return the format of a file: the one asked for, that of the suffix, or that of the content if there is any."""
     suffix = path.suffix.lower() if format is None else f".{format.lower().lstrip('.')}"
     found = SUFFIXES.get(suffix)
+    if suffix == ".json" and format is None and data is not None and _MAP.search(data[:4096]):
+        return SUFFIXES[".geojson"]
     if found is None and format is None and suffix not in ELSEWHERE and data is not None:
         found = _by_content(unpacked(data))
     if found is None:
@@ -251,7 +260,9 @@ def _by_content(data: bytes) -> Format | None:
     if head.startswith(b"PK\x03\x04"):
         return SUFFIXES[".npz"]
     if head.startswith(b"{"):
-        return SUFFIXES[".json"]
+        return SUFFIXES[".geojson" if _MAP.search(head) else ".json"]
+    if head.startswith(b"<") and b"<gpx" in head:
+        return SUFFIXES[".gpx"]
     if head.startswith(b"<"):
         return SUFFIXES[".svg"] if b"<svg" in head else None
     lines = head.splitlines()[:-1] or head.splitlines()

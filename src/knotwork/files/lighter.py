@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
+from knotwork.files.borders import Arcs
 from knotwork.files.document import Document
+from knotwork.files.lines import paced
 from knotwork.geometry.bezier import joined, raised
 from knotwork.insertion import to_bezier
 from knotwork.removal import reduce
@@ -19,7 +21,6 @@ from knotwork.spline import Spline
 
 #: the part of a tolerance that the rounding of numbers may use
 ROUNDED = 0.1
-POLYLINE: dict[str, Any] = {"distance": "geometric", "form": "polyline"}
 
 
 class Lighter(NamedTuple):
@@ -33,14 +34,20 @@ class Lighter(NamedTuple):
 
 
 def lighter(
-    document: Document, tolerance: float, *, effort: str = "normal", corners: bool = True, precision: int | None = None
+    document: Document,
+    tolerance: float,
+    *,
+    effort: str = "normal",
+    corners: bool = True,
+    precision: int | None = None,
+    shared: bool = False,
 ) -> Lighter:
     """Return a drawing whose paths have few segments, each within a distance of its shape.
 
     Parameters
     ----------
     document : Document
-        Of plane curves. What is fixed in its place stays.
+        Of plane curves: a drawing, a map or a track. What is fixed in its place stays.
     tolerance : float
         Largest Fréchet distance, in the units in which the drawing is drawn; a curve that is drawn larger than its
         coordinates say gets as much less. A tenth of it is for the rounding of numbers, so that what is written keeps
@@ -51,6 +58,8 @@ def lighter(
         Whether joints where a curve turns by more than 10 degrees stay exactly.
     precision : int, optional
         Digits after the point, instead of as many as the tolerance needs; what they move counts in the bound.
+    shared : bool
+        Whether borders that polylines share stay shared.
 
     Raises
     ------
@@ -66,33 +75,54 @@ def lighter(
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
     accuracy = {i: grid or ROUNDED * tolerance / places[i].scale for i in free}
     room = {i: min(accuracy[i] * places[i].scale / tolerance, 0.5) for i in free}
-    nets = {i: _cubics(document.splines[i], i) for i in free}
+    straight = [i for i in free if places[i].straight]
+    nets = {i: _cubics(document.splines[i], i) for i in free if not places[i].straight}
     changed: dict[int, Spline] = {}
     counts = {i: len(net) for i, net in nets.items()}
+    before = sum(counts.values()) + sum(_pieces(document.splines[i]) for i in straight)
     worst = 0.0
-    for i in (i for i in free if places[i].straight):
-        reduction = reduce(document.splines[i], (1 - room[i]) * tolerance / places[i].scale, **POLYLINE, effort=effort)
-        changed[i], counts[i] = reduction.spline, len(reduction.spline.space.breaks) - 1
-        worst = max(worst, reduction.bound * places[i].scale)
+    for scale in sorted({places[i].scale for i in straight}):
+        alike = [i for i in straight if places[i].scale == scale]
+        allowed = (1 - room[alike[0]]) * tolerance / scale
+        lines = [document.splines[i] for i in alike]
+        new = _shared(lines, allowed, effort) if shared else [_polyline(line, allowed, effort) for line in lines]
+        for i, (line, bound) in zip(alike, new, strict=True):
+            changed[i], counts[i] = line, _pieces(line)
+            worst = max(worst, bound * scale)
     curved = [i for i in free if not places[i].straight]
     for scale in sorted({places[i].scale for i in curved}):
         alike = [i for i in curved if places[i].scale == scale]
         at = np.cumsum([0, *(len(nets[i]) for i in alike)])
         closed = [places[i].closed for i in alike]
         allowed = (1 - room[alike[0]]) * tolerance / scale
-        found = reduce_bezier(
+        bent = reduce_bezier(
             np.concatenate([nets[i] for i in alike]), at, allowed, closed=closed, effort=effort,
             angle=CORNER if corners else None,
         )  # fmt: skip
         for k, i in enumerate(alike):
-            new = found.nets[found.at[k] : found.at[k + 1]]
-            if len(new):
-                changed[i] = joined(new, breaks_by_length(new, (0.0, float(len(new))), closed[k]), closed[k])
-                counts[i] = len(new)
-                worst = max(worst, float(found.bound[k]) * scale)
-    before = sum(len(net) for net in nets.values())
+            net = bent.nets[bent.at[k] : bent.at[k + 1]]
+            if len(net):
+                changed[i] = joined(net, breaks_by_length(net, (0.0, float(len(net))), closed[k]), closed[k])
+                counts[i] = len(net)
+                worst = max(worst, float(bent.bound[k]) * scale)
     after = document.with_splines(changed).rounding(accuracy)
     return Lighter(after, (before, sum(counts.values())), worst)
+
+
+def _polyline(spline: Spline, tolerance: float, effort: str) -> tuple[Spline, float]:
+    """Return a polyline with few corners at the pace of the one given, and how far it is from it."""
+    reduction = reduce(spline, tolerance, distance="geometric", form="polyline", effort=effort)
+    return paced(reduction, spline), float(reduction.bound)
+
+
+def _shared(splines: list[Spline], tolerance: float, effort: str) -> list[tuple[Spline, float]]:
+    """Return polylines with few corners that run along each other where those given do."""
+    results, bounds = Arcs(splines).reduced(lambda arc: _polyline(arc, tolerance, effort))
+    return list(zip(results, bounds, strict=True))
+
+
+def _pieces(spline: Spline) -> int:
+    return len(spline.space.breaks) - 1
 
 
 def _cubics(spline: Spline, index: int) -> Array:
