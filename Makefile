@@ -10,7 +10,7 @@ CORES ?= auto
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
-demo: .venv/installed  ## reduce a coastline and a drawing, and show what happened
+demo: .venv/installed  ## reduce a drawing and a coastline, and show what happened
 	$(BIN)/python examples/demo.py
 
 test: .venv/tested  ## run the tests on all cores

@@ -1,6 +1,8 @@
 """Make the pictures of the documentation: python docs/figures.py."""
 
+import re
 import sys
+import tempfile
 from pathlib import Path
 
 import matplotlib
@@ -10,6 +12,7 @@ matplotlib.use("agg")
 from matplotlib import pyplot as plt
 
 import knotwork as kw
+from knotwork import cli
 from knotwork.plotting import INK, KNOT
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
@@ -67,17 +70,46 @@ def periodic() -> None:
     fig.savefig(IMAGES / "periodic.png", dpi=150)
 
 
+def drawing() -> None:
+    """Draw the rose as it is and as `knotwork reduce` leaves it, with the ends of all segments marked."""
+    before = EXAMPLES / "rose.svg"
+    with tempfile.TemporaryDirectory() as folder:
+        after = Path(folder) / "rose.svg"
+        cli.main(["reduce", str(before), "--tolerance", "0.2%", "-o", str(after)], standalone_mode=False)
+        parts = [_with_nodes(path, x) for x, path in enumerate((before, after))]
+    head = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 800 366" font-family="sans-serif" font-size="15">'
+    (IMAGES / "rose.svg").write_text("\n".join([head, *parts, "</svg>\n"]))
+
+
+def _with_nodes(path: Path, column: int) -> str:
+    """Return a drawing in its column of the picture, with dots where its segments meet, and its size below."""
+    text = path.read_text()
+    x = 16 + 400 * column
+    inner = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
+    inner = inner.replace("<svg", f'<svg x="{x}"', 1)
+    curves = kw.read(path)
+    breaks = [c(c.space.breaks) for c in curves]
+    dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.4"/>' for x, y in np.concatenate(breaks))
+    segments = sum(len(points) - 1 for points in breaks)
+    caption = f"{segments} segments, {path.stat().st_size / 1000:.1f} kB"
+    return (
+        f'{inner}<g transform="translate({x})"><g fill="{KNOT}" stroke="#fff" stroke-width=".4">{dots}</g>'
+        f'<text x="184" y="350" text-anchor="middle" fill="{INK}">{caption}</text></g>'
+    )
+
+
 def reduction() -> None:
-    """Draw the coast of Iceland reduced to 2 km, as the demo does."""
+    """Draw the coast of Iceland in cubics that are at most 2 km off, as the demo does."""
     sys.path.append(str(EXAMPLES))
     from demo import DETAIL, picture
 
     before = kw.read(EXAMPLES / "iceland.csv")
-    after = [kw.reduce(kw.elevate(line, 2), 2.0).spline for line in before]
+    after = [kw.reduce(line, 2.0, distance="geometric", form="bezier").spline for line in before]
     picture(IMAGES / "iceland.png", before, after, DETAIL["iceland"])
 
 
 if __name__ == "__main__":
     IMAGES.mkdir(exist_ok=True)
     periodic()
+    drawing()
     reduction()

@@ -157,15 +157,18 @@ def test_the_pictures_of_the_pages_are_there():
 
 def check_the_first_block(names, place):
     """What the comments beside the lines say."""
-    c, finer, small = names["c"], names["finer"], names["small"]
+    c, finer, thin, smooth = (names[name] for name in ("c", "finer", "thin", "smooth"))
     u = np.linspace(0, 1, 50)
     np.testing.assert_allclose(finer(u), c(u), atol=1e-14)
     assert finer.space.multiplicity(0.5) == 2
     assert kw.remove(finer, [0.25, 0.5, 0.5], tolerance=1e-12).bound <= 1e-13
     assert [names[part].space.domain for part in ("left", "right")] == [(0, 0.3), (0.3, 1)]
     assert names["nets"].shape == (3, 4, 2)
-    assert small.bound <= 2
-    assert small.spline.degree == (3,)
+    assert max(thin.bound, smooth.bound) <= 2
+    assert thin.spline.degree == (1,)
+    assert len(thin.spline.points) == 345
+    assert smooth.spline.degree == (3,)
+    assert len(smooth.spline.space.breaks) == 127
     written = kw.read(place / "coast.svg")
     assert len(written) == 1
     assert written[0].space.periodic

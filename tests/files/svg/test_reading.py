@@ -14,7 +14,7 @@ import knotwork as kw
 from knotwork.errors import FileError
 from knotwork.files import read
 from knotwork.files.svg.document import decode
-from knotwork.files.svg.pathdata import arc
+from knotwork.files.svg.pathdata import arc, subpaths
 
 #: how far an arc may be from its ellipse, as a part of the larger radius
 ARC = 1.04e-9
@@ -468,3 +468,13 @@ def test_coordinates_of_any_size() -> None:
         np.testing.assert_allclose(c.space.breaks, np.array([0, 3, 7, 12]) * scale, rtol=1e-15)
     with pytest.raises(FileError, match="line 1, <path>: the outline reaches beyond float64"):
         one('<path d="M1e200 0L3 0" transform="scale(1e200)"/>')
+
+
+@given(st.lists(st.tuples(st.integers(-999, 999), st.integers(-999, 999)), min_size=2, max_size=40))
+def test_a_path_of_relative_moves_that_comes_back_has_no_segment_more(moves):
+    """Tenths add as tenths: 0.1 + 0.2 - 0.3 is 0, and no sliver closes the path."""
+    back = [-sum(x) for x in zip(*moves, strict=True)]
+    text = "".join(f"l{x / 10} {y / 10}" for x, y in [*moves, back])
+    (path,) = subpaths(f"m{moves[0][0] / 10} {moves[0][1] / 10}{text}z", pytest.fail)
+    assert len(path.segments) == len(moves) + 1
+    assert path.end == path.start

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from decimal import Decimal
 from typing import NamedTuple
 
 from knotwork.errors import FileError
@@ -137,7 +138,7 @@ def _follow(found: list[Subpath], name: str, text: str, last: Piece) -> Piece:
             raise FileError(wrong)
         (x, y), *groups = groups
         here = found[-1].end if found and relative else (0.0, 0.0)
-        found.append(Subpath((here[0] + x, here[1] + y)))
+        found.append(Subpath((_added(here[0], x), _added(here[1], y))))
         kind = "L"
     last = _segments(found, kind, relative, groups, last)
     if wrong:
@@ -156,11 +157,12 @@ def _segments(found: list[Subpath], kind: str, relative: bool, groups: list[list
         here = path.end
         x0, y0 = here if relative else (0.0, 0.0)
         if kind == "H":
-            points = [(x0 + group[0], here[1])]
+            points = [(_added(x0, group[0]), here[1])]
         elif kind == "V":
-            points = [(here[0], y0 + group[0])]
+            points = [(here[0], _added(y0, group[0]))]
         else:
-            points = [(x0 + x, y0 + y) for x, y in zip(group[::2], group[1::2], strict=True)]
+            handles = zip(group[:-2:2], group[1:-2:2], strict=True)
+            points = [*((x0 + x, y0 + y) for x, y in handles), (_added(x0, group[-2]), _added(y0, group[-1]))]
         if kind in "ST":
             points.insert(0, _reflected(here, last, 3 if kind == "S" else 2))
         piece = tuple(points)
@@ -168,6 +170,11 @@ def _segments(found: list[Subpath], kind: str, relative: bool, groups: list[list
         if len(piece) > 1:
             last = piece
     return last
+
+
+def _added(a: float, b: float) -> float:
+    """Return the sum of two numbers of the data, in decimals: relative moves come back to where they began."""
+    return float(Decimal(repr(a)) + Decimal(repr(b))) if a else b
 
 
 def _open(found: list[Subpath]) -> Subpath:
@@ -194,7 +201,7 @@ def _arcs(path: Subpath, text: str, relative: bool) -> None:
         stop = match.end()
         rx, ry, turned, x, y = numbers(" ".join(match.group(1, 2, 3, 6, 7)))
         x0, y0 = path.end if relative else (0.0, 0.0)
-        path.arc(rx, ry, turned, match[4] == "1", match[5] == "1", (x0 + x, y0 + y))
+        path.arc(rx, ry, turned, match[4] == "1", match[5] == "1", (_added(x0, x), _added(y0, y)))
 
 
 def arc(start: Point, rx: float, ry: float, turned: float, large: bool, sweep: bool, end: Point) -> list[Piece]:
