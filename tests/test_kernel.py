@@ -202,6 +202,7 @@ def test_plain_and_compiled_agree_on_removal(both, dtype):
         for closed in (False, True):
             few = kw.curve(points(rng, dtype, 12, 2).cumsum(axis=0), degree, periodic=closed)
             assert len(kw.reduce(few, 0.5, effort="fast").removed)
+    kw.reduce(kw.curve(points(rng, dtype, 20, 2).cumsum(axis=0)), 2.0, effort="best")  # which squeezes knots out
     net = kw.surface(points(rng, dtype, 9, 4, 2))
     kw.remove(net, net.spaces[0].breaks[1:-1], tolerance=1.0)
     kw.reduce(net, 0.5, effort="best")

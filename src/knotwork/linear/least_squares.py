@@ -57,6 +57,38 @@ def back_substitute(R, z):
                 z[k, c] = z[k, c] - R[k, q] * z[k + q, c]
 
 
+@kernel
+def solve_symmetric(G, g):
+    """Solve in place of g, and with G used up, the equations whose matrix has G[j, q] at j, j + q and at j + q, j.
+
+    It is not negative; what it does not determine, for rounding leaves nothing of a pivot, is 0.
+    """
+    count, band = G.shape
+    for j in range(count):
+        pivot = G[j, 0]
+        if not pivot > 0:
+            for c in range(g.shape[1]):
+                g[j, c] = g[j, c] - g[j, c]
+            for q in range(band):
+                G[j, q] = pivot - pivot
+            continue
+        for q in range(1, min(band, count - j)):
+            ratio = G[j, q] / pivot
+            if ratio == 0:
+                continue
+            for r in range(q, min(band, count - j)):
+                G[j + q, r - q] = G[j + q, r - q] - ratio * G[j, r]
+            for c in range(g.shape[1]):
+                g[j + q, c] = g[j + q, c] - ratio * g[j, c]
+    for j in range(count - 1, -1, -1):
+        if G[j, 0] == 0:
+            continue
+        for c in range(g.shape[1]):
+            for q in range(1, min(band, count - j)):
+                g[j, c] = g[j, c] - G[j, q] * g[j + q, c]
+            g[j, c] = g[j, c] / G[j, 0]
+
+
 def least_squares(A: Banded, weight: Array, d: Array, pinned: dict[int, int] | None = None) -> Array:
     """Return the c that minimises Σ weight_i |(A c − d)_i|², where some c are given.
 

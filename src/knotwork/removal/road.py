@@ -12,7 +12,8 @@ Each removal takes a bounded number of B-splines, and each knot goes once, so th
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.local import place, refit, take_out
+from knotwork.removal.chain import place
+from knotwork.removal.local import refit, take_out
 
 #: what is known of a knot's cost: nothing that still holds, the cost at some rows, the cost at all rows
 STALE, ROUGH, EXACT = 0, 1, 2
@@ -79,7 +80,7 @@ def follow(heap, size, least, steps, effort, data, links, room, cost, known, lim
             return size, True
         q = heap[0]
         exact = known[q] != STALE
-        cost[q] = refit(q, effort, exact, data, links, room)
+        cost[q] = refit(q, True, effort, exact, data, links, room)
         known[q] = EXACT if exact else ROUGH
         sift(heap, size, 0, cost)
         if exact and heap[0] == q and cost[q] <= limit:
