@@ -34,12 +34,14 @@ if TYPE_CHECKING:
     )
     from knotwork.files import Document, Written, open, read, write
     from knotwork.geometry import (
+        Closest,
         Measured,
         Polyline,
         Zeros,
         area,
         by_length,
         centroid,
+        closest,
         corners,
         curvature,
         extrema,
@@ -70,6 +72,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Closest",
     "Conversion",
     "Distance",
     "Document",
@@ -99,6 +102,7 @@ __all__ = [
     "centroid",
     "clamp",
     "close",
+    "closest",
     "convert",
     "corners",
     "curvature",
@@ -172,12 +176,14 @@ _PARTS = {
     ),
     "files": ("Document", "Written", "open", "read", "write"),
     "geometry": (
+        "Closest",
         "Measured",
         "Polyline",
         "Zeros",
         "area",
         "by_length",
         "centroid",
+        "closest",
         "corners",
         "curvature",
         "extrema",

@@ -3,16 +3,19 @@
 from knotwork.geometry.chords import Polyline, flatten
 from knotwork.geometry.local_shape import curvature, frame, normals
 from knotwork.geometry.measures import Measured, area, by_length, centroid, length
+from knotwork.geometry.nearest import Closest, closest
 from knotwork.geometry.roots import Zeros, zeros
 from knotwork.geometry.turning import corners, extrema, inflections
 
 __all__ = [
+    "Closest",
     "Measured",
     "Polyline",
     "Zeros",
     "area",
     "by_length",
     "centroid",
+    "closest",
     "corners",
     "curvature",
     "extrema",
