@@ -39,7 +39,35 @@ USER = """
         c.space.without_knots(0.5)
     except kw.KnotError:
         pass
-    kw.insertion.METHODS["oslo"]
+    assert_type(kw.insertion.METHODS["oslo"].run(c, 0.5), kw.Spline)
+    net = kw.surface(np.zeros((4, 5, 3)))
+    assert_type(kw.volume(np.zeros((4, 4, 4, 3))), kw.Spline)
+    assert_type(kw.elevate(net, {0: 1, 1: 2}), kw.Spline)
+    assert_type(kw.elevate(net, (1, None)), kw.Spline)
+    assert_type(kw.trim(net, {0: (0.25, 0.5)}), kw.Spline)
+    assert_type(kw.convert(net, {0: c.space}).spline, kw.Spline)
+    assert_type(kw.convert(net, [None, c.space]).bound, Any)
+    assert_type(net.isocurve(0.5, axis=1).with_domain(0, 2), kw.Spline)
+    assert_type(kw.join(c, c, tolerance=1e-9).spline, kw.Spline)
+    assert_type(kw.join([c, c]).exact, bool)
+    assert_type(kw.close(c, tolerance=10).spline.with_seam(0.25), kw.Spline)
+    assert_type(kw.unify([c, c], merge=1e-9).splines, tuple[kw.Spline, ...])
+    assert_type(kw.interpolate([[0, 0], [1, 1]], "centripetal", 1, periodic=False), kw.Spline)
+    assert_type(kw.extraction(c.space), kw.Extraction)
+    assert_type(kw.extraction(net), tuple[kw.Extraction, ...])
+    assert_type(kw.extraction(c.space).operators, NDArray[Any])
+    B = c.space.basis([0, 0.5], derivative=1)
+    assert_type(B @ c.points, NDArray[Any])
+    assert_type(B.T.shape, tuple[int, int])
+    assert_type(c * c + 2 * c - 1, kw.Spline)
+    assert_type(-c / 2, kw.Spline)
+    assert_type(c.derivative(order=2), kw.Spline)
+    assert_type(kw.SplineSpace.from_breaks(2, [0, 1, 2], [3, 1, 3]), kw.SplineSpace)
+    assert_type(kw.SplineSpace.from_opennurbs(3, [0, 0, 0, 1, 1, 1]), kw.SplineSpace)
+    kw.split(c, 0.5)[2]  # refused
+    kw.unify(c, near=1)  # refused
+    kw.interpolate(c.points, periodc=True)  # refused
+    c.isocurves(0.5)  # refused
     kw.nosuch  # refused
     kw.insert(c, 0.5, method="bohm")  # refused
     kw.convert(c, c.space, how="magic")  # refused

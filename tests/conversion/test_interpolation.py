@@ -69,8 +69,17 @@ def test_polynomials_come_back():
 @pytest.mark.parametrize(
     ("given", "error", "says"),
     [
-        ((POINTS[:3],), kw.PointError, "3 points given; interpolation of degree 3 needs degree 1 and 4 points"),
-        ((POINTS, None, 0), kw.PointError, "needs degree 1"),
+        (
+            (POINTS[:3],),
+            kw.PointError,
+            "3 points given; interpolation by degree 3 takes 4 or more; degree=2 goes through 3",
+        ),
+        ((POINTS, None, 0), kw.PointError, "degree 0 given; .* takes 1 or more"),
+        (
+            (POINTS[:2], None, 3, True),
+            kw.PointError,
+            "2 points given; interpolation by a closed curve takes 3 or more$",
+        ),
         ((POINTS, np.arange(5)), kw.ParameterError, "5 parameters given; 12 points take 12"),
         ((POINTS, np.arange(12), 3, True), kw.ParameterError, "12 parameters given; 12 points take 13"),
         ((POINTS, [*range(11), 10]), kw.KnotError, r"parameter 10\.0 is given twice"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,12 +39,12 @@ class Unified(NamedTuple):
     bound: Any
 
 
-def unify(splines: Sequence[Spline], merge: Any = 0) -> Unified:
+def unify(splines: Iterable[Spline], merge: Any = 0) -> Unified:
     """Return splines over one space in each parameter: the smallest that holds them all.
 
     Parameters
     ----------
-    splines : sequence of Spline
+    splines : iterable of Spline
         With as many parameters, over the same domains, periodic in the same ones; of any degrees.
     merge : number
         Knots inside the domain no further apart than this, in the units of the parameter, become one: the one that is
@@ -122,7 +122,7 @@ def _merged(spaces: list[SplineSpace], near: Any) -> list[SplineSpace]:
     return result
 
 
-def join(*curves: Spline, tolerance: Any = 0) -> Conversion[Spline]:
+def join(*curves: Spline | Iterable[Spline], tolerance: Any = 0) -> Conversion[Spline]:
     """Return one curve of several that follow each other, as smooth where they meet as a tolerance admits.
 
     Degrees are raised to the highest; all become rational if one is, with weights that agree where they meet. The
@@ -132,7 +132,7 @@ def join(*curves: Spline, tolerance: Any = 0) -> Conversion[Spline]:
     Parameters
     ----------
     *curves : Spline
-        Of one parameter, not periodic, with points of as many coordinates; or one sequence of them.
+        Of one parameter, not periodic, with points of as many coordinates; or one iterable of them.
     tolerance : float
         Largest change allowed in all, in the units of the points; in float arithmetic at least what rounding explains.
 

@@ -69,10 +69,12 @@ def interpolate(points: Any, parameters: Spacing | Any = None, degree: int = 3, 
         raise PointError(f"points of shape {P.shape} given; a curve takes (n, d), or (n,) for numbers")
     require_finite(P, "points", PointError)
     least = 3 if periodic else n + 1
-    if n == 0 or len(P) < least:
-        raise PointError(
-            f"{len(P)} points given; interpolation of degree {n} needs degree 1 and {least} points or more"
-        )
+    if n == 0:
+        raise PointError("degree 0 given; interpolation takes 1 or more")
+    if len(P) < least:
+        fits = "" if periodic or len(P) < 2 else f"; degree={len(P) - 1} goes through {len(P)}"
+        kind = "a closed curve" if periodic else f"degree {n}"
+        raise PointError(f"{len(P)} points given; interpolation by {kind} takes {least} or more{fits}")
     x = _parameters(P, parameters, periodic)
     if object in (x.dtype, P.dtype):
         x, P = (v if v.dtype == object else exact(v, "points", PointError) for v in (x, P))
