@@ -135,3 +135,15 @@ def test_a_period_in_fractions_whatever_its_length(degree):
         x = np.cumsum([F(1 + (7 * k) % 5, 3) for k in range(count + 1)])
         y = np.array([F((11 * k) % 7) for k in range(count)])
         assert kw.interpolate(y, x, degree, periodic=True)(x[:-1]).tolist() == y.tolist()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 5])
+def test_a_period_is_solved_from_any_point_on_and_in_any_order(degree):
+    from knotwork.linear.collocation import solution
+
+    space = kw.SplineSpace.uniform(degree, 23, periodic=True)
+    y = np.random.default_rng(degree).standard_normal((23, 2))
+    x = (np.arange(23) + (degree % 2 == 0) / 2) / 23
+    for order in (np.roll(np.arange(23), 9), np.random.default_rng(1).permutation(23)):
+        A = space.basis(x[order])
+        np.testing.assert_allclose(A @ solution(A, y), y, atol=1e-13)

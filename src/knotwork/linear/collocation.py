@@ -45,9 +45,9 @@ def _around(A: Banded, y: Array) -> Array:
     """Return the x with A·x = y, A square and around a period; if it is singular, what does not solve it."""
     N, width = A.columns, A.entries.shape[1]
     cut = N - (width - 1)
-    if cut < width:  # so few that all may be taken at once
-        return least_squares(A, np.ones(N, A.entries.dtype), y)
     i, column, match = _matched(A)
+    if cut < width or (match >= width).any():  # so few that all may be taken at once; or without such a match
+        return least_squares(A, np.ones(N, A.entries.dtype), y)
     rows, place = np.nonzero(A.entries)
     column, x = column[rows, place], A.entries[rows, place]
     within, right, below = (rows < cut) & (column < cut), (rows < cut) & (column >= cut), rows >= cut
