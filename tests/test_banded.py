@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from dataclasses import FrozenInstanceError
 from fractions import Fraction
 
 import numpy as np
@@ -69,6 +72,21 @@ def test_arrays_on_the_left(space):
         assert (x @ A == np.array(x, object) @ A.toarray()).all()
     with pytest.raises(PointError, match=f"expected {rows} along the last axis"):
         np.zeros(rows + 1) @ A
+
+
+def test_values_are_pickled_and_copied():
+    S = kw.SplineSpace.clamped(3, 8)
+    A = S.basis([0.2, 0.4])
+    matching = kw.distance_bound(kw.curve([0.0, 1], 1), kw.curve([0.0, 2], 1)).matching
+    for value in (A, S, kw.Spline(S, np.arange(8.0)), kw.segment(kw.Spline(S, np.arange(8.0))), matching):
+        for again in (pickle.loads(pickle.dumps(value)), copy.deepcopy(value), copy.copy(value)):
+            for name in ("entries", "knots", "coefficients", "control", "first"):
+                if hasattr(value, name):
+                    assert (np.asarray(getattr(again, name)) == np.asarray(getattr(value, name))).all()
+            with pytest.raises(FrozenInstanceError):
+                again.knots = None
+    assert (pickle.loads(pickle.dumps(A)) @ np.arange(8) == A @ np.arange(8)).all()
+    assert not pickle.loads(pickle.dumps(A)).entries.flags.writeable
 
 
 def test_what_no_machine_holds_is_told_with_a_way_out():

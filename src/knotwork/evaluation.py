@@ -153,7 +153,7 @@ class Basis:
 
 def design_matrix(space: SplineSpace, u: Any, order: int = 0) -> Banded:
     """Return the derivatives of an order of all basis functions at parameters: see `SplineSpace.basis`."""
-    x = parameters(space, u, False)
+    x = parameters(space, u, None)
     if x.ndim > 1:
         raise ParameterError(f"parameters of shape {x.shape} given; expected a number or a flat list")
     x = np.ascontiguousarray(x).reshape(-1)
@@ -162,13 +162,14 @@ def design_matrix(space: SplineSpace, u: Any, order: int = 0) -> Banded:
     return Banded(first, E[order], space.dimension)
 
 
-def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
+def parameters(space: SplineSpace, u: Any, extrapolate: bool | None) -> Array:
     """Return parameter values as an array in the space's arithmetic; wrapped into the period if there is one.
 
     Raises
     ------
     ParameterError
-        If a value is not a finite real number, or is outside the domain and `extrapolate` is false; what rounding
+        If a value is not a finite real number, or is outside the domain and `extrapolate` is false, or None where that
+        is no choice; what rounding
         took there, by 4 units in the last place of the larger end or less, is the end.
     """
     x = in_arithmetic_of(space.knots, real_numbers(u, "parameters", ParameterError), "parameters", ParameterError)
@@ -188,7 +189,8 @@ def parameters(space: SplineSpace, u: Any, extrapolate: bool) -> Array:
         return np.where(outside, np.where(inside < b, inside, a), x)  # rounding may reach b
     if not extrapolate and outside.any():
         wrong = x.reshape(-1)[int(np.argmax(outside))]
-        raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]; extrapolate=True allows it")
+        way = "" if extrapolate is None else "; extrapolate=True allows it"
+        raise ParameterError(f"parameter {wrong} is outside the domain [{a}, {b}]{way}")
     return x
 
 

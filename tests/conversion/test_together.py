@@ -146,6 +146,19 @@ def test_close_undoes_clamp(c):
         assert (d(a + (b - a) * F(k, 12)) == c(a + (b - a) * F(k, 12))).all()
 
 
+def test_ends_that_meet_with_other_weights():
+    """As a rational curve it is closed; its homogeneous coordinates jump at the seam."""
+    c = kw.curve([[0, 0], [1, 1], [2, 0], [0, 0]], 3, weights=[1, 2, 3, 2])
+    found = kw.close(c)
+    assert found.spline.space.periodic
+    assert found.exact
+    u = np.linspace(0, 1, 30)[:-1]
+    np.testing.assert_allclose(found.spline(u), c(u), atol=1e-15)
+    np.testing.assert_allclose(found.spline(1.0), [0, 0], atol=1e-15)
+    with pytest.raises(kw.ParameterError, match=r"the ends are 0\.5 apart"):
+        kw.close(kw.curve([[0, 0], [1, 1], [2, 0], [0.5, 0]], 3, weights=[1, 2, 3, 2]))
+
+
 def test_ends_apart_are_named():
     with pytest.raises(kw.ParameterError, match=r"the ends are 0\.1 apart"):
         kw.close(kw.curve([[0, 0], [1, 1], [0.1, 0]], 1))

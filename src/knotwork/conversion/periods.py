@@ -42,6 +42,10 @@ def close(spline: Spline, axis: int = 0, tolerance: Any = 0) -> Conversion[Splin
     ParameterError
         If the ends are further apart than the tolerance admits.
 
+    Notes
+    -----
+    Where the ends of a rational spline meet in a point with different weights, the weights jump at the seam.
+
     Examples
     --------
     >>> import knotwork as kw
