@@ -27,7 +27,15 @@ UNIT = 2.0**-53
 
 
 class Closest(NamedTuple):
-    """The nearest points of a curve to given points."""
+    """The nearest points of a curve to given points.
+
+    Examples
+    --------
+    >>> import knotwork as kw
+    >>> found = kw.closest(kw.curve([[0, 0], [4, 0]], degree=1), [[1, 2]])
+    >>> found.points.round(9).tolist(), found.distances.round(9).tolist()
+    ([[1.0, 0.0]], [2.0])
+    """
 
     #: parameters, one for each given point
     parameters: Array
