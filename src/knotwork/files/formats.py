@@ -61,6 +61,7 @@ FORMATS = (
     Format(
         "gpx", "GPX track", (".gpx",), "tracks and routes, in place", "curves of degree 1", ("extras",), shapes=True
     ),
+    Format("cad.iges", "IGES", (".igs", ".iges"), "curves and surfaces, B-splines in place", "curves and surfaces"),
 )
 SUFFIXES = {suffix: each for each in FORMATS for suffix in each.suffixes}
 #: where files of other suffixes can come from
