@@ -93,10 +93,10 @@ class FileError(KnotworkError):
     Examples
     --------
     >>> import knotwork as kw
-    >>> kw.read("curve.step")
+    >>> kw.read("curve.x_t", format="x_t")
     Traceback (most recent call last):
         ...
-    knotwork.errors.FileError: curve.step: unknown suffix '.step'; expected one of ...
+    knotwork.errors.FileError: curve.x_t: unknown format 'x_t'; expected one of ...
     """
 
 
