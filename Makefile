@@ -4,8 +4,10 @@ PYTHON ?= python3
 BIN := .venv/bin
 # Processes that share the tests: all cores unless told otherwise, as in `make test CORES=1`.
 CORES ?= auto
+# Random results of each kind that `make check-removal` works out again.
+NUMBER ?= 1000
 
-.PHONY: help demo test thorough bounds lint bench bench-removal methods crossovers accuracy clean
+.PHONY: help demo test thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -34,6 +36,9 @@ bench: .venv/tested  ## race this library and the peers that are installed
 bench-removal: .venv/tested  ## control points that `reduce` leaves, and its time, beside peers
 	$(BIN)/python benchmarks/removal.py
 	$(BIN)/python benchmarks/removal_surfaces.py
+
+check-removal: .venv/tested  ## bounds of random reductions, worked out again in fractions: make check-removal NUMBER=10000
+	$(BIN)/python tests/removal/again.py $(NUMBER)
 
 methods: .venv/tested  ## race all methods of knot insertion; docs/figures_insertion_study.py draws the result
 	$(BIN)/python benchmarks/methods.py

@@ -142,7 +142,12 @@ def reduce(
 
     Notes
     -----
-    The bound is proven; that no curve with fewer knots would do is not, for the search is a heuristic.
+    The bound is proven; that no curve with fewer knots would do is not, for the search is a heuristic. With "fast" and
+    "normal" a larger tolerance never leaves more knots; "best" and the classic search do not promise that, and none
+    promises that fewer knots are left where more may go (`keep`).
+
+    Where no roads lead, the classic search is what runs, whatever the effort: for exact numbers, degree 0, complex
+    points with one tolerance per component, and a tolerance of 0 in some components only.
 
     Examples
     --------

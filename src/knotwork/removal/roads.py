@@ -28,12 +28,14 @@ from knotwork.removal.window import Data, Effort, Room
 
 #: rows of an interval that take part in a fit, where it has more
 FEW = 6
+#: and where knots move to let another go
+MORE = 24
 #: removals between reports of progress
 STEPS = 512
 #: knots that are tried, cheapest first, before squeezing is given up; and tries in all
-CHEAPEST, TRIES = 6, 120
+CHEAPEST, TRIES = 4, 60
 #: on each side of a knot that is squeezed out, how many others move, and how often
-REACH, SWEEPS = 10, 15
+REACH, SWEEPS = 10, 12
 
 
 class Manner(NamedTuple):
@@ -103,7 +105,7 @@ class Roads:
         """Return what is left when knots are squeezed out, or None if none goes."""
         around, square, room, best = (self.data.degree + 5) // 2, limit * limit, room_for(self.data), None
         price, force = Effort(around, FEW, 1, 0, 0.0), Effort(around, FEW, 2, 3, 0.0)
-        beside = Effort(around, FEW, 1, 5, square)
+        beside = Effort(around, MORE, 1, 5, square)
         tries, found = 0, True
         while found and tries < TRIES:
             found, cost = False, np.full(len(links.alive), np.inf)
@@ -124,7 +126,7 @@ def room_for(data: Data) -> Room:
     """Allocate the working space of a fit."""
     n, d = data.degree, data.d.shape[1]
     most = 4 * (2 * n + 1 + (n + 5) // 2) + 2 * n + 8
-    rows = len(data.d) + FEW + 1
+    rows = len(data.d) + MORE + 1
 
     def ints(*shape: int) -> Array:
         return np.zeros(shape, np.int64)

@@ -41,7 +41,7 @@ def squeeze_out(q, reach, sweeps, force, effort, data, links, room, limit):
     for sweep in range(sweeps):
         first, i, worst = start, start, limit - limit
         for step in range(reach + 1):
-            refit(i, False, effort, True, data, links, room)
+            refit(i, False, effort, False, data, links, room)
             settle(data, links, room)
             worst = max(worst, room.worst[0])
             lead = room.lead[0]

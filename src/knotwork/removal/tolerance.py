@@ -1,4 +1,4 @@
-"""What a tolerance means: a distance, one per component, a part of the extent, or a function of the parameter."""
+"""What a tolerance means: a distance, one per component, or a part of the extent."""
 
 from __future__ import annotations
 
@@ -46,10 +46,7 @@ def relative(fraction: Any) -> Relative:
 
 
 def extent_of(spline: Spline) -> Any:
-    """Return the longest side of the box of points that a spline surely reaches.
-
-    Sampled densely and at the zeros of the derivative between samples, so never above the true extent.
-    """
+    """Return the longest side of the box of the points at eight places in each interval: at most the true extent."""
     axes = []
     for space in spline.spaces:
         breaks = space.breaks
