@@ -63,6 +63,13 @@ def test_sparse_and_wide_ones_are_never_dense():
     np.testing.assert_allclose((A.T @ A) @ x[1:], A.T @ (A @ x[1:]), atol=1e-12)
 
 
+def test_an_exact_matrix_is_rounded_for_scipy():
+    pytest.importorskip("scipy.sparse")
+    A = kw.SplineSpace.bezier(2, [Fraction(0), Fraction(1)]).basis([Fraction(1, 3)])
+    assert A.toarray().tolist() == [[Fraction(4, 9), Fraction(4, 9), Fraction(1, 9)]]
+    assert A.tocsr().toarray().tolist() == [[4 / 9, 4 / 9, 1 / 9]]
+
+
 @given(strategies.spaces(exact=True))
 def test_arrays_on_the_left(space):
     A = space.basis(space.breaks)

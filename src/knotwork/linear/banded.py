@@ -7,7 +7,7 @@ from typing import Any, Self, overload
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, numbers
+from knotwork.arithmetic.arrays import Array, empty, in_arithmetic_of, in_floats, numbers
 from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import PointError, SizeError
 from knotwork.value import Frozen
@@ -227,7 +227,7 @@ class Banded(Frozen):
         return dense
 
     def tocsr(self) -> Any:
-        """Return the matrix as a `scipy.sparse.csr_array` (scipy must be installed)."""
+        """Return the matrix as a `scipy.sparse.csr_array` (scipy must be installed); exact numbers rounded."""
         try:
             from scipy.sparse import coo_array
         except ImportError as exc:
@@ -235,6 +235,7 @@ class Banded(Frozen):
 
             raise MissingExtraError("tocsr() needs scipy: pip install scipy") from exc
         row, column, x = self._places()
+        x = in_floats(x, "entries", PointError)
         matrix = coo_array((x, (row, column)), shape=self.shape).tocsr()
         matrix.eliminate_zeros()
         return matrix
