@@ -8,6 +8,16 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from knotwork import arithmetic, diagrams, errors, insertion, progressive, stability
+    from knotwork.bridges import (
+        from_path,
+        from_path_data,
+        from_scipy,
+        from_shapely,
+        to_path,
+        to_path_data,
+        to_scipy,
+        to_shapely,
+    )
     from knotwork.building import curve, surface, volume
     from knotwork.conversion import (
         Conversion,
@@ -117,7 +127,11 @@ __all__ = [
     "flatten",
     "frame",
     "from_bezier",
+    "from_path",
+    "from_path_data",
     "from_pieces",
+    "from_scipy",
+    "from_shapely",
     "inflections",
     "insert",
     "insertion",
@@ -140,6 +154,10 @@ __all__ = [
     "stability",
     "surface",
     "to_bezier",
+    "to_path",
+    "to_path_data",
+    "to_scipy",
+    "to_shapely",
     "trim",
     "unify",
     "volume",
@@ -149,6 +167,16 @@ __all__ = [
 
 _PARTS = {
     "arithmetic": (),
+    "bridges": (
+        "from_path",
+        "from_path_data",
+        "from_scipy",
+        "from_shapely",
+        "to_path",
+        "to_path_data",
+        "to_scipy",
+        "to_shapely",
+    ),
     "building": ("curve", "surface", "volume"),
     "conversion": (
         "Conversion",

@@ -68,6 +68,8 @@ class Document:
     _given: builtins.bytes = field(repr=False)
     #: how far rounding may move the points of a spline that is written, in its own coordinates
     _accuracy: dict[int, float] = field(default_factory=dict, repr=False)
+    #: whether what was there stays where a new text would be longer
+    _shorter: bool = field(default=False, repr=False)
 
     def map(self, f: Callable[[Spline], Spline]) -> Document:
         """Return the document with splines replaced by what a function makes of them.
@@ -93,6 +95,10 @@ class Document:
         """
         return replace(self, _accuracy={**self._accuracy, **accuracy})
 
+    def where_shorter(self) -> Document:
+        """Return the document that leaves what was there where a new text would be longer."""
+        return replace(self, _shorter=True)
+
     def with_splines(self, changed: Mapping[int, Spline]) -> Document:
         """Return the document with some splines replaced, given by their numbers."""
         for i, spline in changed.items():
@@ -114,14 +120,15 @@ class Document:
         """Tell whether the file has a place for splines that replace others: for all that its rows say, say."""
         return bool(getattr(self._content, "holds", lambda _: True)(changed))
 
-    def bytes(self, *, even_if_longer: bool = False) -> tuple[builtins.bytes, float]:
+    def bytes(self, *, even_if_longer: bool | None = None) -> tuple[builtins.bytes, float]:
         """Return the bytes of the document, and how far rounding moved a point at most, as it is drawn."""
         before = self._content.splines
         changed = {i: s for i, s in enumerate(self.splines) if s is not before[i]}
-        data, bound = self._content.rewritten(changed, self._accuracy, even_if_longer=even_if_longer)
+        longer = not self._shorter if even_if_longer is None else even_if_longer
+        data, bound = self._content.rewritten(changed, self._accuracy, even_if_longer=longer)
         return data, bound
 
-    def write(self, path: str | os.PathLike[str], *, even_if_longer: bool = False) -> Written:
+    def write(self, path: str | os.PathLike[str], *, even_if_longer: bool | None = None) -> Written:
         """Write the document, whole or not at all.
 
         Parameters
@@ -129,8 +136,9 @@ class Document:
         path : path-like
             Of the suffix that the document was read with: its bytes, with the splines that were replaced in their
             places. Of another one: the splines, in that format.
-        even_if_longer : bool
-            Whether a spline that was replaced is written even where its text is longer than what was there.
+        even_if_longer : bool, optional
+            Whether a spline that was replaced is written even where its text is longer than what was there. By default
+            it is, unless the document is one that was to become lighter.
 
         Returns
         -------
@@ -149,7 +157,7 @@ class Document:
         replace_file(path, data)
         return Written(path, len(self.splines), bound)
 
-    def packed(self, path: Path, *, even_if_longer: bool = False) -> tuple[builtins.bytes, float]:
+    def packed(self, path: Path, *, even_if_longer: bool | None = None) -> tuple[builtins.bytes, float]:
         """Return what `write` would write to a file of the same format, packed if its suffix says so."""
         try:
             data, bound = self.bytes(even_if_longer=even_if_longer)

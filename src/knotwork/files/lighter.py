@@ -105,7 +105,7 @@ def lighter(
                 changed[i] = joined(net, breaks_by_length(net, (0.0, float(len(net))), closed[k]), closed[k])
                 counts[i] = len(net)
                 worst = max(worst, float(bent.bound[k]) * scale)
-    after = document.with_splines(changed).rounding(accuracy)
+    after = document.with_splines(changed).rounding(accuracy).where_shorter()
     return Lighter(after, (before, sum(counts.values())), worst)
 
 

@@ -95,7 +95,8 @@ class Drawing:
                 continue
             text, bound = _text(outline, changed, accuracy)
             a, b = outline.span
-            if even_if_longer or len(text) < b - a:
+            asked = even_if_longer and any(i in changed for i in outline.splines)
+            if asked or len(text) < b - a:
                 values[outline.span] = text.encode()
                 worst = max(worst, bound * outline.scale)
         return spliced(self.data, values), worst
