@@ -75,7 +75,19 @@ if TYPE_CHECKING:
     )
     from knotwork.plotting import plot
     from knotwork.progressive import blossom, segment
-    from knotwork.removal import Distance, Matching, Reduction, distance_bound, fit, reduce, relative, removable, remove
+    from knotwork.removal import (
+        Distance,
+        Distances,
+        Matching,
+        Reduction,
+        distance,
+        distance_bound,
+        fit,
+        reduce,
+        relative,
+        removable,
+        remove,
+    )
     from knotwork.space import SplineSpace
     from knotwork.spline import Spline
 
@@ -85,6 +97,7 @@ __all__ = [
     "Closest",
     "Conversion",
     "Distance",
+    "Distances",
     "Document",
     "Extraction",
     "FileError",
@@ -118,6 +131,7 @@ __all__ = [
     "curvature",
     "curve",
     "diagrams",
+    "distance",
     "distance_bound",
     "elevate",
     "errors",
@@ -237,8 +251,10 @@ _PARTS = {
     "progressive": ("blossom", "segment"),
     "removal": (
         "Distance",
+        "Distances",
         "Matching",
         "Reduction",
+        "distance",
         "distance_bound",
         "fit",
         "reduce",
