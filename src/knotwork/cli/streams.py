@@ -65,6 +65,7 @@ _OPTIONS = (
     click.option("--split-at", metavar="NAME=VALUE", help="Rows that end a polyline of a table, as in pressure=0."),
     click.option("--open/--closed", "open_", default=None, help="Whether polylines are closed.  [as they end]"),
     click.option("--extras", type=click.Choice(["interpolate", "drop"]), help="Elevation and time of new points."),
+    click.option("--glyph", help="Name or character of the one glyph of a font to take."),
     click.option("--id", "name", metavar="NAME", help="Id of the one element of a drawing to take."),
 )
 
@@ -82,6 +83,7 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
         open_: bool | None,
         name: str | None,
         extras: str | None,
+        glyph: str | None,
         **rest: Any,
     ) -> Any:
         asked = {
@@ -91,6 +93,7 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
             "closed": None if open_ is None else not open_,
             "name": name,
             "extras": extras,
+            "glyph": glyph,
         }
         options = {key: value for key, value in asked.items() if value is not None}
         return command(*args, reading=Reading(format_, options), **rest)

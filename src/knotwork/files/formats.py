@@ -62,6 +62,16 @@ FORMATS = (
         "gpx", "GPX track", (".gpx",), "tracks and routes, in place", "curves of degree 1", ("extras",), shapes=True
     ),
     Format("cad.iges", "IGES", (".igs", ".iges"), "curves and surfaces, B-splines in place", "curves and surfaces"),
+    Format(
+        "fonts",
+        "font",
+        (".ttf", ".otf", ".woff"),
+        "outlines of glyphs",
+        "",
+        options=("glyph",),
+        needs="fonttools",
+        shapes=True,
+    ),
 )
 SUFFIXES = {suffix: each for each in FORMATS for suffix in each.suffixes}
 #: where files of other suffixes can come from
@@ -232,7 +242,7 @@ def encoded(
     if accuracy is not None and not (accuracy > 0 and math.isfinite(accuracy)):
         raise ParameterError(f"accuracy {accuracy} given; expected a finite number above 0")
     if not hasattr(found.codec, "encode"):
-        raise FileError(f"{path}: a {found.name} is written in place of one that was read, with its `Document`")
+        raise FileError(f"{path}: a {found.name} is read, not written")
     try:
         data, bound = found.codec.encode(list(splines), accuracy)
     except KnotworkError as exc:
