@@ -8,6 +8,9 @@ The step makes the blossom value S = B(…, u) of P = B(…, a) and Q = B(…, b
     homogeneous   (b × u P + u × a Q) / b × a,  where knots are pairs (t, w) and x × y = x_t y_w - y_t x_w
 
 `triangle.variant(combine=homogeneous)` is the same triangle over homogeneous knots, and so with all others.
+Run top down, from a weight 1 at the apex to weights E of the points at the base, the step hands the weight of S on to
+P and Q: `shares`, in the same forms.
+
 Letters: a and b are the knots at the left and at the right of n + 1 points F, F[j] = B(a_{j+1} … a_n, b_1 … b_j);
 x are the arguments that go in, or u if it is one; S is what is made. Counted from 0, a_1 is a[0].
 """
@@ -93,6 +96,41 @@ def triangle(S, F, a, b, x, n, D):
     for r in range(n):
         level(F, F, a[r:], b, n - r, x[r], D)
     copy(S, F[0], D)
+
+
+@kernel
+def shares(e, a, b, u):
+    """Return what P and Q get of the weight e of S = (1 - w) P + w Q: e - w e, and w e."""
+    right = (u - a) / (b - a) * e
+    return e - right, right
+
+
+@kernel
+def homogeneous_shares(e, a, b, u):
+    """Return what P and Q get of the weight e of S over pairs, as in `homogeneous`."""
+    d = b[0] * a[1] - a[0] * b[1]
+    p = quotient(b[0] * u[1] - u[0] * b[1], d)
+    q = quotient(u[0] * a[1] - a[0] * u[1], d)
+    return p * e, q * e
+
+
+@kernel
+def handed_down(E, a, b, r, m, u, zero):
+    """E = weights of the m + 1 points of a level, from those of the m that `level` makes of them over a[r:] and b."""
+    carried = zero
+    for j in range(m):
+        left, right = shares(E[j], a[r + j], b[j], u)
+        E[j] = carried + left
+        carried = right
+    E[m] = carried
+
+
+@kernel
+def weights(E, a, b, x, n, zero):
+    """E[j] = weight of F[j] in B(x_1 … x_n): the triangle run top down (§2.2.1; Oslo I, Eq. 4.1)."""
+    E[0] = zero + 1
+    for k in range(1, n + 1):
+        handed_down(E, a, b, n - k, k, x[k - 1], zero)
 
 
 @kernel

@@ -13,6 +13,7 @@ from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.arithmetic.parallel import in_parts
 from knotwork.knots import merge, merged, next_knot, old_among, require_multiplicity
 from knotwork.linear.banded import combination, long_sum, short_sum
+from knotwork.schemes import weights
 
 #: rows whose weights are computed before they are applied to all curves of a net
 BLOCK = 64
@@ -55,21 +56,6 @@ def three_new(U, lu, hu, W, lw):
 
 
 @kernel
-def many_new(U, lu, hu, W, lw, v, E, i):
-    """E[i] = the weights of row i where any v arguments are new."""
-    zero = U[hu] - U[hu]
-    E[i, 0] = zero + 1
-    for k in range(1, v + 1):
-        x = W[lw + k - 1]
-        saved = zero
-        for r in range(k):
-            b = (x - U[lu - k + r]) / (U[hu + r] - U[lu - k + r]) * E[i, r]
-            E[i, r] = saved + (E[i, r] - b)
-            saved = b
-        E[i, k] = saved
-
-
-@kernel
 def discrete_bsplines(U, lu, hu, W, lw, v, E, i):
     """E[i, r] = weight of P[lu-1-v+r] in the blossom at U[lu … hu-1] and W[lw … lw+v-1]: row i of the insertion matrix.
 
@@ -84,7 +70,7 @@ def discrete_bsplines(U, lu, hu, W, lw, v, E, i):
     elif v == 3:
         E[i, 0], E[i, 1], E[i, 2], E[i, 3] = three_new(U, lu, hu, W, lw)
     else:
-        many_new(U, lu, hu, W, lw, v, E, i)
+        weights(E[i], U[lu - v :], U[hu:], W[lw:], v, U[hu] - U[hu])
 
 
 @kernel
@@ -101,7 +87,7 @@ def control_point(U, lu, hu, W, lw, v, P, out, i, E, D):
     elif v == 3:
         short_sum(out, 0, i, P, s, three_new(U, lu, hu, W, lw), D)
     else:
-        many_new(U, lu, hu, W, lw, v, E, 0)
+        weights(E[0], U[lu - v :], U[hu:], W[lw:], v, U[hu] - U[hu])
         long_sum(out, 0, i, P, s, E, 0, v, D)
 
 

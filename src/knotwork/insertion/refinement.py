@@ -37,8 +37,7 @@ def insert_one(spline: Spline, u: float, axis: int) -> Spline:
         lo, hi = max(q - n - 1, 0), min(q + n + 2, N)
         W[:, :lo], W[:, hi + 1 :] = blocks[:, :lo], blocks[:, hi:]
         s[:lo], s[hi + n + 2 :] = t[:lo], t[hi + n + 1 :]
-    near = t[lo : hi + n + 1], blocks[:, lo:hi], n, n, hi - lo - 1, u, s[lo : hi + n + 2], W[:, lo : hi + 1]
-    m = one_knot(*near, extent(B))
+    m = one_knot(t[lo : hi + n + 1], blocks[:, lo:hi], u, s[lo : hi + n + 2], W[:, lo : hi + 1], extent(B))
     if m > n:
         raise KnotError(f"knot {u} has multiplicity {m + 1}; degree {n} allows at most {n + 1}")
     return spline.with_axis(axis, SplineSpace.trusted(n, s), along(W, P, axis))

@@ -4,42 +4,55 @@ from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
 from knotwork.knots import last_at_most
-from knotwork.schemes import combine
+from knotwork.schemes import combine, copy, copy_points
 
 
 @kernel
-def one_knot(t, P, n, first, last, u, s, W, D):
-    """Insert u into [t_q, t_{q+1}): W_i = B(t_{i+1}, …, u, …, t_{i+n-1}) for q-n < i <= q, the rest are copies.
+def one_knot(t, P, u, s, W, D):
+    """Insert u into each curve P[a]: the new knots go to s, the new points to W[a]; return how often u was a knot.
 
-    The new knot vector goes to s. Returns how often u was a knot before; q is sought between `first` and `last`, and
-    is the last interval that is not empty where u is the right end.
+    Nothing is done where u was a knot more than n times. u lies in the domain; where it is its right end, it goes into
+    the last interval that is not empty.
     """
-    at = q = last_at_most(t, first, last, u)
+    n, last = len(t) - P.shape[1] - 1, P.shape[1] - 1
+    q = last_at_most(t, n, last, u)
+    m = copies(t, q, u)
+    if m <= n:
+        put_in(s, t, q, u)
+        for a in range(len(P)):
+            boehm(W[a], P[a], t, n, q, u, D)
+    return m
+
+
+@kernel
+def copies(t, q, u):
+    """Return how many knots about t_q equal u."""
     m = 0
     while q - m >= 0 and t[q - m] == u:
         m += 1
-    while q + 1 < len(t) and t[q + 1] == u:  # the right end: u goes before its copies
+    while q + 1 < len(t) and t[q + 1] == u:
         m += 1
         q += 1
-    if m > n:
-        return m
-    q = at
+    return m
+
+
+@kernel
+def put_in(s, t, q, u):
+    """s = t_0 … t_q, u, t_{q+1} …"""
     for i in range(q + 1):
         s[i] = t[i]
     s[q + 1] = u
     for i in range(q + 1, len(t)):
         s[i + 1] = t[i]
-    for a in range(len(P)):
-        for i in range(q - n + 1):
-            for c in range(len(D)):
-                W[a, i, c] = P[a, i, c]
-        for i in range(q - n + 1, q + 1):
-            if t[i] == u:
-                for c in range(len(D)):
-                    W[a, i, c] = P[a, i - 1, c]
-            else:
-                combine(W[a, i], P[a, i - 1], P[a, i], t[i], t[i + n], u, D)
-        for i in range(q + 1, W.shape[1]):
-            for c in range(len(D)):
-                W[a, i, c] = P[a, i - 1, c]
-    return m
+
+
+@kernel
+def boehm(W, P, t, n, q, u, D):
+    """W_i = B(t_{i+1}, …, u, …, t_{i+n-1}) for q - n < i <= q, one combination each; the rest are copies (§4.5)."""
+    copy_points(W, P, q - n + 1, D)
+    for i in range(q - n + 1, q + 1):
+        if t[i] == u:
+            copy(W[i], P[i - 1], D)
+        else:
+            combine(W[i], P[i - 1], P[i], t[i], t[i + n], u, D)
+    copy_points(W[q + 1 :], P[q:], len(P) - q, D)

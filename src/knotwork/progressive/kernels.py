@@ -11,13 +11,14 @@ import numpy as np
 from knotwork import schemes
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import Kernel, kernel
-from knotwork.schemes import complex_quotient, copy_points, homogeneous, quotient
+from knotwork.schemes import complex_quotient, copy_points, homogeneous, homogeneous_shares, quotient
 
 #: the step and its schemes over homogeneous knots: the one text of `schemes`, in its fourth form
 level, apex, between, tetrahedron, halves = (
     scheme.variant(combine=homogeneous)
     for scheme in (schemes.level, schemes.triangle, schemes.between, schemes.tetrahedron, schemes.halves)
 )
+handed_down = schemes.handed_down.variant(shares=homogeneous_shares)
 
 
 def over(knots: Array, procedure: Kernel) -> Kernel:
@@ -83,20 +84,10 @@ def cox_de_boor(b, t, x):
     """b[i] = the basis functions at x_i: the triangle run from its apex down to its base (§2.2.1, Eq. 2.2)."""
     n = len(t) // 2
     for i in range(len(x)):
-        u, v = x[i, 0], x[i, 1]
-        zero = u - u
+        zero = x[i, 0] - x[i, 0]
         b[i, 0] = zero + 1
-        for m in range(1, n + 1):
-            b[i, m] = zero
-            for k in range(m, -1, -1):
-                s = zero
-                if k > 0:
-                    a, c = t[n - m + k - 1], t[n + k - 1]
-                    s = quotient(u * a[1] - a[0] * v, c[0] * a[1] - a[0] * c[1]) * b[i, k - 1]
-                if k < m:
-                    a, c = t[n - m + k], t[n + k]
-                    s = s + quotient(c[0] * v - u * c[1], c[0] * a[1] - a[0] * c[1]) * b[i, k]
-                b[i, k] = s
+        for k in range(1, n + 1):
+            handed_down(b[i], t, t[n:], n - k, k, x[i], zero)
 
 
 @kernel

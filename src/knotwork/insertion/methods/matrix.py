@@ -7,25 +7,20 @@ from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
 from knotwork.insertion.methods.perspectives import by_intervals
-from knotwork.schemes import combine, copy, copy_points
+from knotwork.schemes import combine, copy, copy_points, handed_down
 
 
 @kernel
 def row(E, a, b, x, n, one):
-    """E[r] = α_{q-n+r}(i): an Oslo triangle of x_1 … x_n run from a 1 at its apex down to its base (Oslo I, Eq. 4.1).
+    """E[r] = α_{q-n+r}(i): the weights of an Oslo triangle of x_1 … x_n (Oslo I, Eq. 4.1).
 
-    Each value is the sum of two terms, at the ends of a level zeros, as §4.17 counts it.
+    A weight is handed down in two parts, and each new one is a sum of two: §4.17 counts so, also where one is a zero.
     """
     zero = one - one
     E[0] = one
-    for k in range(n):
-        carried = zero
-        for r in range(k + 1):
-            c = n - 1 - k + r
-            w = (x[k] - a[c]) / (b[r] - a[c]) * E[r]
-            E[r] = carried + (E[r] - w)
-            carried = w
-        E[k + 1] = carried + zero - zero
+    for k in range(1, n + 1):
+        handed_down(E, a, b, n - k, k, x[k - 1], zero)
+        E[k] = E[k] + zero - zero
 
 
 @kernel
@@ -167,17 +162,23 @@ def next_columns(X, G, m, r):
 
 
 @kernel
+def given_shares(e, a, b, u):
+    """Return what P and Q get of the weight e of S = (1 - w) P + w Q, where w is given as a."""
+    right = a * e
+    return e - right, right
+
+
+handed_by_weights = handed_down.variant(shares=given_shares)
+
+
+@kernel
 def from_apex(E, G, k, j, one):
-    """E[i] = coefficient of base point j + i in point j of level k: a triangle of k levels, top down, as in `row`."""
+    """E[i] = coefficient of base point j + i in point j of level k: as in `row`, from the weights G."""
     zero = one - one
     E[0] = one
-    for i in range(k):
-        carried = zero
-        for r in range(i + 1):
-            w = G[k - 1 - i, j + r] * E[r]
-            E[r] = carried + (E[r] - w)
-            carried = w
-        E[i + 1] = carried + zero - zero
+    for i in range(1, k + 1):
+        handed_by_weights(E, G[k - i], G[k - i], j, i, one, zero)
+        E[i] = E[i] + zero - zero
 
 
 @kernel
