@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import collections
 import copy
 import functools
 import importlib
@@ -305,12 +306,17 @@ TEMPLATES = {
 }
 
 
-@compiling
-def test_every_kernel_is_tried(both):
-    """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
+def import_all():
+    """Import every module, so that every kernel is among those known."""
     for module in pkgutil.walk_packages(kw.__path__, "knotwork."):
         if module.name.rpartition(".")[2] != "__main__":
             importlib.import_module(module.name)
+
+
+@compiling
+def test_every_kernel_is_tried(both):
+    """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""
+    import_all()
     test_plain_and_compiled_agree_on_curves(both, np.float64)
     test_plain_and_compiled_agree_on_surfaces(both)
     test_plain_and_compiled_agree_on_removal(both, np.float64)
@@ -487,6 +493,28 @@ def test_a_kernel_that_moves_to_another_module_is_another(monkeypatch):
         names = {"__name__": module}
         exec("def same(x):\n    return x + 1", names)
         digests.add(kernels.kernel(names["same"]).digest)
+    assert len(digests) == 2
+
+
+#: kernels of searches that still take more
+LONG = {"follow", "fitted", "weights_of_row", "descended", "fitted_window", "tried", "longest", "measured"}
+
+
+def test_a_kernel_takes_at_most_eight_arguments():
+    """Working space is a named tuple."""
+    import_all()
+    own = [k.source for k in kernels.KERNELS if k.source.__module__.startswith("knotwork.")]
+    assert {f.__name__ for f in own if f.__code__.co_argcount > 8} <= LONG
+
+
+def test_a_named_tuple_with_other_fields_makes_another_kernel(monkeypatch):
+    """A kernel may make one: what was compiled for fields in another order must not be loaded."""
+    monkeypatch.setattr(kernels, "KERNELS", [])
+    digests = set()
+    for fields in ("x y", "y x"):
+        names = {"Pair": collections.namedtuple("Pair", fields), "__name__": "here"}
+        exec("def make(x):\n    return Pair(x, x + 1).y", names)
+        digests.add(kernels.kernel(names["make"]).digest)
     assert len(digests) == 2
 
 

@@ -189,6 +189,8 @@ class Kernel:
             value = self.source.__globals__.get(name)
             if isinstance(value, int | float | str | tuple):
                 hasher.update(f"{name}={value!r};".encode())
+            elif isinstance(value, type) and hasattr(value, "_fields"):  # a named tuple
+                hasher.update(f"{name}={value._fields!r};".encode())
         for name, callee in self._callees():
             hasher.update(f"{name}:{callee.digest};".encode())
         return hasher.hexdigest()[:16]

@@ -10,7 +10,7 @@ that are not negative and sum to one.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,89 +19,103 @@ from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import ParameterError
 from knotwork.insertion.merge import BLOCK, discrete_bsplines
-from knotwork.knots import distinct, merged, old_among, old_is_next
-from knotwork.linear.banded import Banded, along, as_blocks, combination
+from knotwork.knots import distinct, merged, next_knot, old_among
+from knotwork.linear.banded import Banded, Rows, along, as_blocks, combination
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline, require_spline
 
 
+class Room(NamedTuple):
+    """Working space: rows of the matrix, those of insertion at T[i+1 … i+n], at T[i+2 … i+n+1] and another; knots."""
+
+    rows: Rows
+    R: Array
+    x: Array
+
+    @classmethod
+    def of(cls, count: int, n: int, dtype: Any) -> Room:
+        """Return room for so many rows at a time."""
+        return cls(Rows.room(count, n + 2, dtype), np.empty((3, n + 1), dtype), np.empty(n + 1, dtype))
+
+
 @kernel
-def insertion_row(U, lu, hu, W, lw, hw, R, i):
-    """R[i] = weights of the blossom at U[lu … hu-1] and W[lw … hw-1]; return their first column and how many follow.
+def insertion_row(E, U, lu, hu, W, lw, hw):
+    """E = weights of the blossom at U[lu … hu-1] and W[lw … hw-1]; return their first column and how many follow.
 
     A new knot equal to the old one before the run stands for it.
     """
     if lw < hw and W[lw] == U[lu - 1]:
         lu -= 1
         lw += 1
-    discrete_bsplines(U, lu, hu, W, lw, hw - lw, R, i)
-    return lu - 1 - (hw - lw), hw - lw
+    v = hw - lw
+    discrete_bsplines(E, U[lu - v :], U[hu:], W[lw:], v, U[0] - U[0])
+    return lu - 1 - v, v
 
 
 @kernel
-def add_row(E, i, column, R, k, v, share):
-    """Add share · R[k, 0 … v] to E[i] from a column on."""
+def add_row(E, column, R, v, share):
+    """Add share · R[0 … v] to E from a column on."""
     for r in range(v + 1):
-        E[i, column + r] += share * R[k, r]
+        E[column + r] += share * R[r]
 
 
 @kernel
-def raise_degree(T, U, W, n, lo, P, out, start, count, E, R, x, D):
-    """out[a, i] = control point lo + i of degree n + 1, a block of rows of the matrix at a time.
+def raised_rows(T, U, W, lo, rows, R, x):
+    """Row i = row lo + i of the matrix that raises the degree by one.
 
-    T is U and W merged, the raised knots; W holds each break once. Of each row of a block, `start` is the first column,
-    `count` how many follow, and E has the weights. R: room for the rows of insertion at T[i+1 … i+n] and
-    T[i+2 … i+n+1], and another; x for knots.
+    T is U and W merged, the raised knots; W holds each break once. `R` and `x` are as in `Room`.
     """
-    stop = len(U)
+    stop, n, E = len(U), len(x) - 1, rows.E
     lu, hu = old_among(U, W, stop, lo + 1), old_among(U, W, stop, lo + n + 1)
     lw, hw = lo + 1 - lu, lo + n + 1 - hu
     here = 0
-    first, v = insertion_row(U, lu, hu, W, lw, hw, R, here)
-    for top in range(0, out.shape[1], len(start)):
-        block = min(len(start), out.shape[1] - top)
-        for i in range(block):
-            a, b = lo + top + i + 1, lo + top + i + n + 1
-            if old_is_next(U, hu, W, hw, stop):
-                hu += 1
-            else:
-                hw += 1
-            old, new = lu, lw  # T[a … b] is U[old … hu-1] and W[new … hw-1]
-            if new < hw and W[new] == U[old - 1]:
-                old -= 1
-                new += 1
-            if old_is_next(U, lu, W, lw, stop):
-                lu += 1
-            else:
-                lw += 1
-            next_first, next_v = insertion_row(U, lu, hu, W, lw, hw, R, 1 - here)
-            start[i], count[i] = first, v if T[a] == T[b] else next_first + next_v - first
-            zero = U[0] - U[0]
-            for r in range(count[i] + 1):
-                E[i, r] = zero
-            j = a
-            while j <= b:
-                copies = 1
-                while j + copies <= b and T[j + copies] == T[j]:
-                    copies += 1
-                share = (zero + copies) / (n + 1)
-                if j + copies > b:  # the last value is left out
-                    add_row(E, i, 0, R, here, v, share)
-                elif j == a:
-                    add_row(E, i, next_first - first, R, 1 - here, next_v, share)
-                else:  # one in between: the window holds its new copy
-                    m = 0
-                    for k in range(new, hw):
-                        if W[k] != T[j]:
-                            x[m] = W[k]
-                            m += 1
-                    discrete_bsplines(U, old, hu, x, 0, m, R, 2)
-                    add_row(E, i, old - 1 - m - first, R, 2, m, share)
-                j += copies
-            first, v, here = next_first, next_v, 1 - here
+    first, v = insertion_row(R[here], U, lu, hu, W, lw, hw)
+    for i in range(len(E)):
+        a, b = lo + i + 1, lo + i + n + 1
+        _, hu, hw = next_knot(U, hu, W, hw, stop)
+        old, new = lu, lw  # T[a … b] is U[old … hu-1] and W[new … hw-1]
+        if new < hw and W[new] == U[old - 1]:
+            old -= 1
+            new += 1
+        _, lu, lw = next_knot(U, lu, W, lw, stop)
+        next_first, next_v = insertion_row(R[1 - here], U, lu, hu, W, lw, hw)
+        rows.first[i], rows.last[i] = first, v if T[a] == T[b] else next_first + next_v - first
+        zero = U[0] - U[0]
+        for r in range(rows.last[i] + 1):
+            E[i, r] = zero
+        j = a
+        while j <= b:
+            copies = 1
+            while j + copies <= b and T[j + copies] == T[j]:
+                copies += 1
+            share = (zero + copies) / (n + 1)
+            if j + copies > b:  # the last value is left out
+                add_row(E[i], 0, R[here], v, share)
+            elif j == a:
+                add_row(E[i], next_first - first, R[1 - here], next_v, share)
+            else:  # one in between: the window holds its new copy
+                m = 0
+                for k in range(new, hw):
+                    if W[k] != T[j]:
+                        x[m] = W[k]
+                        m += 1
+                discrete_bsplines(R[2], U[old - m :], U[hu:], x, m, zero)
+                add_row(E[i], old - 1 - m - first, R[2], m, share)
+            j += copies
+        first, v, here = next_first, next_v, 1 - here
+
+
+@kernel
+def raise_degree(T, U, W, lo, P, out, room, D):
+    """out[a, i] = control point lo + i of degree n + 1, as many rows of the matrix at a time as there is room for."""
+    rows = room.rows
+    for top in range(0, out.shape[1], len(rows.E)):
+        count = out.shape[1] - top
+        block = Rows(rows.first[:count], rows.last[:count], rows.E[:count])
+        raised_rows(T, U, W, lo + top, block, room.R, room.x)
         for a in range(len(P)):
-            for i in range(block):
-                combination(out, a, top + i, P, start[i], E, i, count[i], D)
+            for i in range(len(block.E)):
+                combination(out[a, top + i], P[a, block.first[i] :], block.E[i], block.last[i], D)
 
 
 def elevate(spline: Spline, times: int | Mapping[int, int] | Sequence[int | None] = 1, axis: int = 0) -> Spline:
@@ -144,8 +158,8 @@ def _once(spline: Spline, axis: int) -> Spline:
     out = empty((A, rows, B), P.dtype)
 
     def part(a: int, b: int, first: int, last: int) -> None:
-        some = _room(max(1, min(BLOCK, last - first)), n, t.dtype)
-        raise_degree(T, t, W, n, lo + first, P[a:b], out[a:b, first:last], *some, extent(B))
+        room = Room.of(max(1, min(BLOCK, last - first)), n, t.dtype)
+        raise_degree(T, t, W, lo + first, P[a:b], out[a:b, first:last], room, extent(B))
 
     if A == 1:
         in_parts(lambda first, last: part(0, 1, first, last), rows, out.size)
@@ -158,16 +172,10 @@ def raised(space: SplineSpace) -> tuple[SplineSpace, Banded]:
     """Return the space of one degree more that holds `space`, and the matrix that takes control points there."""
     target, T, W, lo = _raised_knots(space)
     t = space.unrolled.knots
-    start, count, E, *some = _room(target.dimension, space.degree, t.dtype)
-    none = np.empty((0, 0, 1)), np.empty((0, target.dimension, 1))
-    raise_degree(T, t, W, space.degree, lo, *none, start, count, E, *some, extent(1))
-    return target, Banded.packed(space.unrolled.own(start), count, E, space.dimension, wraps=space.periodic)
-
-
-def _room(rows: int, n: int, dtype: np.dtype[Any]) -> tuple[Array, ...]:
-    """Return arrays for as many rows of the matrix, and what their computation needs."""
-    start, count = np.empty(rows, np.intp), np.empty(rows, np.intp)
-    return start, count, empty((rows, n + 2), dtype), np.empty((3, n + 1), dtype), np.empty(n + 1, dtype)
+    room = Room.of(target.dimension, space.degree, t.dtype)
+    raised_rows(T, t, W, lo, *room)
+    first, last, E = room.rows
+    return target, Banded.packed(space.unrolled.own(first), last, E, space.dimension, wraps=space.periodic)
 
 
 def _raised_knots(space: SplineSpace) -> tuple[SplineSpace, Array, Array, int]:

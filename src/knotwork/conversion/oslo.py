@@ -16,7 +16,8 @@ from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError
 from knotwork.insertion.merge import discrete_bsplines
 from knotwork.knots import last_at_most
-from knotwork.linear.banded import Banded, along, as_blocks
+from knotwork.linear.banded import Banded, Rows, along, as_blocks
+from knotwork.schemes import copy, copy_points, level
 from knotwork.space import SplineSpace
 
 #: halvings of an interval in search of a maximum, whose relative error is about the square of what is left
@@ -64,20 +65,19 @@ def beta(t, i, n, a, b, enough):
 
 
 @kernel
-def choose(U, first, last, t, at, n, mu, size):
-    """mu[i] = the interval of U in [first, last] that meets the support of function at + i over t with least β.
+def choose(U, first, last, t, n, mu, size):
+    """mu[i] = the interval of U in [first, last] that meets the support of function i over t with least β.
 
     size[i] is that β. Of a support that meets none, the nearest interval.
     """
     for i in range(len(mu)):
-        lo, hi = t[at + i], t[at + i + n + 1]
-        q = last_at_most(U, first, last, lo)
+        q = last_at_most(U, first, last, t[i])
         mu[i] = q
-        size[i] = beta(t, at + i, n, U[q], U[q + 1], np.inf)
+        size[i] = beta(t, i, n, U[q], U[q + 1], np.inf)
         q += 1
-        while q <= last and U[q] < hi:
+        while q <= last and U[q] < t[i + n + 1]:
             if U[q] < U[q + 1]:
-                least = beta(t, at + i, n, U[q], U[q + 1], size[i])
+                least = beta(t, i, n, U[q], U[q + 1], size[i])
                 if least < size[i]:
                     size[i], mu[i] = least, q
             q += 1
@@ -123,30 +123,26 @@ def reduce_order(U, q, t, i, n, x):
 
 
 @kernel
-def oslo_1(U, mu, t, at, n, start, count, E, x):
-    """Rows of the conversion matrix: E[i, r], r = 0 … count[i], is the weight of point start[i] + r (5.14)."""
+def oslo_1(U, mu, t, rows, x):
+    """Row i of the conversion matrix, from piece mu[i], for function i over t (5.14). x: room for n knots."""
+    n = rows.E.shape[1] - 1
     for i in range(len(mu)):
-        lu, hu, v = reduce_order(U, mu[i], t, at + i, n, x)
-        discrete_bsplines(U, lu, hu, x, 0, v, E, i)
-        start[i], count[i] = lu - 1 - v, v
+        lu, hu, v = reduce_order(U, mu[i], t, i, n, x)
+        discrete_bsplines(rows.E[i], U[lu - v :], U[hu:], x, v, U[0] - U[0])
+        rows.first[i], rows.last[i] = lu - 1 - v, v
 
 
 @kernel
-def oslo_2(U, mu, t, at, n, P, out, c, x, D):
-    """out[a, i] = the blossom of piece mu[i] at the knots of function at + i over t, by the triangle (5.18)."""
+def oslo_2(U, mu, t, P, out, F, x, D):
+    """out[a, i] = the blossom of piece mu[i] at the knots of function i over t, by a triangle over F (5.18)."""
+    n = len(F) - 1
     for a in range(len(P)):
         for i in range(len(mu)):
-            lu, hu, v = reduce_order(U, mu[i], t, at + i, n, x)
-            for r in range(v + 1):
-                for d in range(len(D)):
-                    c[r, d] = P[a, lu - 1 - v + r, d]
+            lu, hu, v = reduce_order(U, mu[i], t, i, n, x)
+            copy_points(F, P[a, lu - 1 - v :], v + 1, D)
             for k in range(v, 0, -1):
-                for r in range(k):
-                    b = (x[k - 1] - U[lu - k + r]) / (U[hu + r] - U[lu - k + r])
-                    for d in range(len(D)):
-                        c[r, d] = (1 - b) * c[r, d] + b * c[r + 1, d]
-            for d in range(len(D)):
-                out[a, i, d] = c[0, d]
+                level(F, F, U[lu - k :], U[hu:], k, x[k - 1], D)
+            copy(out[a, i], F[0], D)
 
 
 class Pieces(NamedTuple):
@@ -186,8 +182,8 @@ def least_pieces(space: SplineSpace, target: SplineSpace) -> Pieces:
     while U[last] == U[last + 1]:
         last -= 1
     mu, size = np.empty(target.dimension, np.intp), np.empty(target.dimension)
-    u, v = _in_floats(U, t, *space.domain)
-    choose(u, first, last, v, at, n, mu, size)
+    u, v = _in_floats(U, t[at:], *space.domain)
+    choose(u, first, last, v, n, mu, size)
     return Pieces(mu, size)
 
 
@@ -221,12 +217,12 @@ def conversion_matrix(space: SplineSpace, target: SplineSpace, pieces: Pieces | 
         If the degrees or domains differ, or only one space is periodic.
     """
     mu = (pieces or least_pieces(space, target)).mu
-    n, rows = space.degree, target.dimension
+    n = space.degree
     U, t, at = space.unrolled.knots, target.unrolled.knots, target.unrolled.zero
     dtype = np.result_type(U.dtype, t.dtype)
-    start, count, E = np.empty(rows, np.intp), np.empty(rows, np.intp), empty((rows, n + 1), dtype)
-    oslo_1(U, mu, t, at, n, start, count, E, np.empty(n + 1, dtype))
-    return Banded.packed(space.unrolled.own(start), count, E, space.dimension, wraps=space.periodic)
+    rows = Rows.room(target.dimension, n + 1, dtype)
+    oslo_1(U, mu, t[at:], rows, np.empty(n + 1, dtype))
+    return Banded.packed(space.unrolled.own(rows.first), rows.last, rows.E, space.dimension, wraps=space.periodic)
 
 
 def converted(space: SplineSpace, target: SplineSpace, P: Array, axis: int, pieces: Pieces | None = None) -> Array:
@@ -238,5 +234,5 @@ def converted(space: SplineSpace, target: SplineSpace, P: Array, axis: int, piec
     A, _, B = blocks.shape
     out = empty((A, target.dimension, B), P.dtype)
     room = np.empty((n + 1, B), P.dtype), np.empty(n + 1, np.result_type(U.dtype, t.dtype))
-    oslo_2(U, mu, t, at, n, blocks, out, *room, extent(B))
+    oslo_2(U, mu, t[at:], blocks, out, *room, extent(B))
     return along(out, P, axis)

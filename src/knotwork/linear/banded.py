@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Self, overload
+from typing import Any, NamedTuple, Self, overload
 
 import numpy as np
 
@@ -15,39 +15,52 @@ from knotwork.value import Frozen
 _set = object.__setattr__
 
 
+class Rows(NamedTuple):
+    """Rows of a matrix: row i has the entries E[i, 0 … last[i]] from column first[i] on; what follows in E is junk."""
+
+    first: Array
+    last: Array
+    E: Array
+
+    @classmethod
+    def room(cls, count: int, width: int, dtype: Any) -> Rows:
+        """Return room for so many rows, so many entries wide."""
+        return cls(np.empty(count, np.intp), np.empty(count, np.intp), empty((count, width), dtype))
+
+
 @kernel
-def short_sum(out, a, i, P, s, w, D):
-    """out[a, i] = Σ w[r] · P[a, s + r] for a tuple of weights."""
+def short_sum(S, F, w, D):
+    """S = Σ w[r] · F[r] for a tuple of weights."""
     for c in range(len(D)):
-        total = w[0] * P[a, s, c]
+        total = w[0] * F[0, c]
         for r in range(1, len(w)):
-            total = total + w[r] * P[a, s + r, c]
-        out[a, i, c] = total
+            total = total + w[r] * F[r, c]
+        S[c] = total
 
 
 @kernel
-def long_sum(out, a, i, P, s, E, j, v, D):
-    """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v."""
+def long_sum(S, F, E, v, D):
+    """S = Σ E[r] · F[r], r = 0 … v."""
     for c in range(len(D)):
-        total = E[j, 0] * P[a, s, c]
+        total = E[0] * F[0, c]
         for r in range(1, v + 1):
-            total = total + E[j, r] * P[a, s + r, c]
-        out[a, i, c] = total
+            total = total + E[r] * F[r, c]
+        S[c] = total
 
 
 @kernel
-def combination(out, a, i, P, s, E, j, v, D):
-    """out[a, i] = Σ E[j, r] · P[a, s + r], r = 0 … v; one vector loop for the short sums."""
+def combination(S, F, E, v, D):
+    """S = Σ E[r] · F[r], r = 0 … v; one vector loop for the short sums."""
     if v == 0:
-        short_sum(out, a, i, P, s, (E[j, 0],), D)
+        short_sum(S, F, (E[0],), D)
     elif v == 1:
-        short_sum(out, a, i, P, s, (E[j, 0], E[j, 1]), D)
+        short_sum(S, F, (E[0], E[1]), D)
     elif v == 2:
-        short_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2]), D)
+        short_sum(S, F, (E[0], E[1], E[2]), D)
     elif v == 3:
-        short_sum(out, a, i, P, s, (E[j, 0], E[j, 1], E[j, 2], E[j, 3]), D)
+        short_sum(S, F, (E[0], E[1], E[2], E[3]), D)
     else:
-        long_sum(out, a, i, P, s, E, j, v, D)
+        long_sum(S, F, E, v, D)
 
 
 @kernel
@@ -56,7 +69,7 @@ def apply_rows(first, E, P, out, D):
     v = E.shape[1] - 1
     for a in range(len(P)):
         for i in range(len(first)):
-            combination(out, a, i, P, first[i], E, i, v, D)
+            combination(out[a, i], P[a, first[i] :], E[i], v, D)
 
 
 @kernel

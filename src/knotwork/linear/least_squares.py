@@ -35,11 +35,12 @@ def rotate(w, x, p, k, R, D, z):
 
 
 @kernel
-def triangularise(first, X, weight, y, R, D, z, x, p):
+def triangularise(first, X, weight, y, R, D, z, row):
     """Bring the rows √weight·(X | y), with entries from column first[i] on, to triangular form √D·(R | z).
 
-    `first` does not decrease, so R is as narrow as X. x and p: room for one row.
+    `first` does not decrease, so R is as narrow as X. `row`: room for one of X and one of y.
     """
+    x, p = row
     for i in range(len(first)):
         for r in range(len(x)):
             x[r] = X[i, r]
@@ -120,7 +121,7 @@ def least_squares(A: Banded, weight: Array, d: Array, pinned: dict[int, int] | N
     order = np.argsort(first, kind="stable") if (first[1:] < first[:-1]).any() else slice(None)
     band = X.shape[1]
     R, D = np.zeros((columns, band), X.dtype), np.zeros(columns, X.dtype)
-    triangularise(first[order], X[order], weight[order], y[order], R, D, z, np.empty(band, X.dtype), z[0].copy())
+    triangularise(first[order], X[order], weight[order], y[order], R, D, z, (np.empty(band, X.dtype), z[0].copy()))
     back_substitute(R, z)
     return _out_of_order(z) if A.wraps else z
 
@@ -139,9 +140,8 @@ def factored(A: Banded, weight: Array, fixed: Array) -> tuple[Array, Array, Arra
         X[rows, r] = 0 * X[rows, r]
     order = np.argsort(first, kind="stable") if (first[1:] < first[:-1]).any() else slice(None)
     R, D, nothing = np.zeros((n, band), X.dtype), np.zeros(n, X.dtype), np.zeros((max(n, len(first)), 0), X.dtype)
-    triangularise(
-        first[order], X[order], weight[order], nothing, R, D, nothing, np.empty(band, X.dtype), np.empty(0, X.dtype)
-    )
+    row = np.empty(band, X.dtype), np.empty(0, X.dtype)
+    triangularise(first[order], X[order], weight[order], nothing, R, D, nothing, row)
     return R, D, place
 
 

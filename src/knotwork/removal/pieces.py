@@ -8,6 +8,8 @@ and a spline has a piece for each interval between its knots.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
@@ -18,9 +20,18 @@ from knotwork.removal.problem import Original
 EXCHANGES = 24
 
 
+class Room(NamedTuple):
+    """Working space: the samples of the reference, their weights, and divided differences."""
+
+    ref: Array
+    w: Array
+    a: Array
+
+
 @kernel
-def levelled(x, f, c, ref, w, a):
-    """Return h, by which the best polynomial at the samples `ref` is off by turns, and its divided differences in a."""
+def levelled(x, f, c, room):
+    """Return h, by which the best polynomial at the reference is off by turns, and its divided differences in a."""
+    ref, w, a = room
     m = len(ref)
     top = bottom = f[0, c] - f[0, c]
     for r in range(m):
@@ -51,15 +62,16 @@ def value(x, u, ref, a):
 
 
 @kernel
-def fits(x, f, c, lo, hi, limit, ref, w, a):
+def fits(x, f, c, lo, hi, limit, room):
     """Tell whether a polynomial stays within `limit` of the samples lo … hi - 1 of component c."""
+    ref, w, a = room
     m = len(ref)
     if hi - lo < m:
         return True
     for r in range(m):
         ref[r] = lo + (r * (hi - lo - 1)) // (m - 1)
     for _ in range(EXCHANGES):
-        h = levelled(x, f, c, ref, w, a)
+        h = levelled(x, f, c, room)
         if abs(h) > limit:
             return False
         worst, most, at = limit, limit - limit, -1
@@ -96,24 +108,25 @@ def exchange(f, c, ref, w, h, e, at):
 
 
 @kernel
-def all_fit(x, f, lo, hi, limit, ref, w, a):
+def all_fit(x, f, lo, hi, limit, room):
     """Tell whether polynomials stay within the limits of all components."""
     within = True
     for c in range(f.shape[1]):
-        within = within and fits(x, f, c, lo, hi, limit[c], ref, w, a)
+        within = within and fits(x, f, c, lo, hi, limit[c], room)
     return within
 
 
 @kernel
-def longest_pieces(x, f, limit, most, ends, ref, w, a):
+def longest_pieces(x, f, limit, most, ends, room):
     """ends = where each of the fewest pieces ends, by doubling and halving; returns how many, at most `most`."""
-    lo, count, guess = 0, 0, len(ref)
+    lo, count, width = 0, 0, len(room.ref)
+    guess = width
     while lo < len(x) and count < most:
-        good, bad, step = min(lo + len(ref) - 1, len(x)), len(x) + 1, guess
+        good, bad, step = min(lo + width - 1, len(x)), len(x) + 1, guess
         while good < len(x) and bad - good > 1:
             doubling = bad > len(x)
             trial = min(max(good + 1, lo + step), len(x)) if doubling else (good + bad) // 2
-            if all_fit(x, f, lo, trial, limit, ref, w, a):
+            if all_fit(x, f, lo, trial, limit, room):
                 good, step = trial, 2 * (trial - lo)
             else:
                 bad = trial
@@ -127,8 +140,8 @@ def longest_pieces(x, f, limit, most, ends, ref, w, a):
 def pieces(x: Array, f: Array, n: int, limit: Array, most: int) -> Array:
     """Return the ends of the fewest polynomial pieces of degree n within `limit` (d,) of samples f (N, d) at x."""
     ends = np.empty(most, np.int64)
-    ref, w, a = np.empty(n + 2, np.int64), np.empty(n + 2, x.dtype), np.empty(n + 2, x.dtype)
-    return ends[: longest_pieces(x, f, limit, most, ends, ref, w, a)]
+    room = Room(np.empty(n + 2, np.int64), np.empty(n + 2, x.dtype), np.empty(n + 2, x.dtype))
+    return ends[: longest_pieces(x, f, limit, most, ends, room)]
 
 
 def fewest_points(original: Original) -> int | None:

@@ -7,6 +7,8 @@ can reach, in the maximum norm, is e = |yᵀd| / Σ|y_i|. The signs of y alterna
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
@@ -16,13 +18,23 @@ from knotwork.arithmetic.kernel import kernel
 _MOST = 10**300
 
 
+class Room(NamedTuple):
+    """Working space for one knot: the knots and points around it, the ratios of its rows, and the error."""
+
+    s: Array
+    c: Array
+    a: Array
+    b: Array
+    e: Array
+
+
 @kernel
-def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):
+def rank(t, d, n, last, copies, scale, weight, room):
     """weight[…] = cost of the knots t[last[k]], one for each of its first copies[k] copies, taken one after another.
 
-    The cost is the largest |e|·scale over the components, added up over the copies. s, c, a, b, e: room for knots,
-    points, ratios and one point.
+    The cost is the largest |e|·scale over the components, added up over the copies.
     """
+    s, c, e = room.s, room.c, room.e
     at = 0
     for k in range(len(last)):
         z = t[last[k]]
@@ -37,7 +49,7 @@ def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):
                 c[i, x] = d[base + i, x]
         total = scale[0] * 0
         for copy in range(copies[k]):
-            level(s, c, n, m, z, a, b, e)
+            level(room, n, m, z)
             cost = scale[0] * 0
             for x in range(len(e)):
                 cost = max(cost, abs(e[x]) * scale[x])
@@ -45,16 +57,17 @@ def rank(t, d, n, last, copies, scale, weight, s, c, a, b, e):
             weight[at] = total
             at += 1
             if copy + 1 < copies[k]:
-                take_out(s, c, n, m, a, b, e)
+                take_out(room, n, m)
                 m -= 1
 
 
 @kernel
-def level(s, c, n, m, z, a, b, e):
+def level(room, n, m, z):
     """e = yᵀd / Σ|y|, and the ratios a, b of the rows, for one of the m copies of z in the local knots s.
 
     z stands at s[n+1 … n+m]; its rows are c[m-1 … n+1].
     """
+    s, c, a, b, e = room
     lo, L = m - 1, n - m + 1
     for i in range(1, L + 1):
         width = s[lo + i + n + 1] - s[lo + i]
@@ -80,12 +93,13 @@ def level(s, c, n, m, z, a, b, e):
 
 
 @kernel
-def take_out(s, c, n, m, a, b, e):
+def take_out(room, n, m):
     """Remove one copy of z from the local knots and points: solve the rows for c with the error ±e in them.
 
     From the top while b ≥ 1/2 and from the bottom below, so that errors do not grow; the row in between holds by
     the choice of e.
     """
+    s, c, a, b, e = room
     lo, L = m - 1, n - m + 1
     split = 0
     while split < L and 2 * b[split + 1] >= 1:
@@ -107,8 +121,14 @@ def ranked(t: Array, d: Array, n: int, last: Array, copies: Array, scale: Array)
     """Return the cost of each copy of the knots t[last] in turn, as floats; d holds points of shape (N, d)."""
     dtype = np.result_type(t.dtype, d.dtype)
     weight = np.empty(int(copies.sum()), np.result_type(t.dtype, scale.dtype))
-    s, c, e = np.empty(3 * n + 3, t.dtype), np.empty((2 * n + 3, d.shape[1]), dtype), np.empty(d.shape[1], dtype)
-    rank(t, d, n, last, copies, scale, weight, s, c, np.empty(n + 3, t.dtype), np.empty(n + 3, t.dtype), e)
+    room = Room(
+        np.empty(3 * n + 3, t.dtype),
+        np.empty((2 * n + 3, d.shape[1]), dtype),
+        np.empty(n + 3, t.dtype),
+        np.empty(n + 3, t.dtype),
+        np.empty(d.shape[1], dtype),
+    )
+    rank(t, d, n, last, copies, scale, weight, room)
     if weight.dtype == object:
         weight = np.array([min(w, _MOST) for w in weight.tolist()])
     return weight.astype(np.float64)

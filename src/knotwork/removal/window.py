@@ -90,7 +90,7 @@ def weights_of_row(i, p, n, t, period, s, at, x, E, r):
         else:
             x[new] = knot_at(t, period, j)
             new += 1
-    discrete_bsplines(s, p + 1, here, x, 0, new, E, r)
+    discrete_bsplines(E[r], s[p + 1 - new :], s[here:], x, new, s[0] - s[0])
     return new
 
 

@@ -100,18 +100,18 @@ def passes(P, Q, Y, lo, hi, limit, D):
 
 
 @kernel
-def matched(P, Q, Y, lo, hi, limit, start, u, D):
+def matched(P, Q, course, lo, hi, start, u):
     """u[k] = start + w_k for the points lo … hi - 1 that a link passes: feet made monotone within their intervals."""
     reach = 0.0
     for k in range(lo, hi):
-        along, chord, _ = foot(P, Q, Y[k], D)
+        along, chord, _ = foot(P, Q, course.Y[k], course.D)
         reach = min(max(reach, along / chord), 1.0) if chord > 0 else 1.0
         u[k] = reach
     reach = 1.0
     for k in range(hi - 1, lo - 1, -1):
-        along, chord, square = foot(P, Q, Y[k], D)
+        along, chord, square = foot(P, Q, course.Y[k], course.D)
         if chord > 0:
-            root = math.sqrt(max(along * along - chord * (square - limit), 0.0))
+            root = math.sqrt(max(along * along - chord * (square - course.limit), 0.0))
             reach = max(min(reach, (along + root) / chord), 0.0)
         u[k] = start + min(u[k], reach)
 

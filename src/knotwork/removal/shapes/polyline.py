@@ -39,7 +39,7 @@ def match_route(course, ends, V, u):
     """u[k] = the parameter on vertices V of point k of Y; vertex n stands for point ends[n]."""
     for n in range(len(ends) - 1):
         u[ends[n]] = n
-        matched(V[n], V[n + 1], course.Y, ends[n] + 1, ends[n + 1], course.limit, n, u, course.D)
+        matched(V[n], V[n + 1], course, ends[n] + 1, ends[n + 1], n, u)
         u[ends[n + 1]] = n + 1
 
 
