@@ -19,7 +19,7 @@ import knotwork as kw
 from contenders import installed
 from knotwork.arithmetic import kernel
 from knotwork.insertion import METHODS
-from knotwork.insertion.merge import refined
+from knotwork.insertion.merge import refined_blocks
 from knotwork.insertion.methods.problem import Problem
 from peers import readable, timed
 
@@ -51,7 +51,7 @@ def contenders(t, W, P, n):
     for name, method in METHODS.items():
         racers[name, "whole"] = lambda name=name: kw.insert(kw.curve(P, n, t), W, method=name).coefficients
         racers[name, "kernel"] = lambda method=method: method.points(ready)
-    racers["merge", "kernel"] = lambda: refined(t, W, len(P), n, P[None], 0, len(P) + len(W))  # and its bookkeeping
+    racers["merge", "kernel"] = lambda: refined_blocks(t, W, len(P), n, P[None], 0, len(P) + len(W))
     for name, peer in installed().items():
         if name != "knotwork" and peer.insert(t, n, P, W) is not None:
             racers[name, "peer"] = lambda peer=peer: peer.insert(t, n, P, W)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import strategies as kinds
 from knotwork import SplineSpace
 from knotwork.errors import KnotError
-from knotwork.knots import combine, distinct, merged, nodes, require_multiplicity, sorted_knots
+from knotwork.knots import distinct, merged, nodes, require_multiplicity, sorted_knots, with_multiplicities
 
 F = Fraction
 
@@ -30,14 +30,14 @@ def test_multiplicities_are_those_of_a_multiset(a, b):
     assert dict(zip(values, counts, strict=True)) == in_a
     assert Counter(merged(a, b).tolist()) == in_a + in_b
     for pick, expected in ((np.minimum, in_a & in_b), (np.maximum, in_a | in_b)):
-        assert combine(a, b, pick).tolist() == sorted(expected.elements())
-    assert combine(merged(a, b), b, np.subtract).tolist() == a.tolist()
+        assert with_multiplicities(a, b, pick).tolist() == sorted(expected.elements())
+    assert with_multiplicities(merged(a, b), b, np.subtract).tolist() == a.tolist()
 
 
 def test_floats_and_fractions_of_the_same_value_are_the_same_knot():
     a, b = np.array([0.0, 0.5]), np.array([F(1, 2), F(1)], dtype=object)
-    assert combine(a, b, np.maximum).tolist() == [0, F(1, 2), 1]
-    assert combine(a, b, np.minimum).tolist() == [F(1, 2)]
+    assert with_multiplicities(a, b, np.maximum).tolist() == [0, F(1, 2), 1]
+    assert with_multiplicities(a, b, np.minimum).tolist() == [F(1, 2)]
 
 
 @pytest.mark.parametrize("given_knots", [[0, 1, 2], [0.0, 1.0, 2.0], (0, 1, 2), np.arange(3, dtype=np.int8), range(3)])

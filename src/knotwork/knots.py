@@ -130,7 +130,7 @@ def nearest_knot(knots: Array, x: Any) -> Any:
     return knots[int(np.argmin(np.abs(knots - x)))]
 
 
-def combine(a: Array, b: Array, pick: Callable[[Array, Array], Array]) -> Array:
+def with_multiplicities(a: Array, b: Array, pick: Callable[[Array, Array], Array]) -> Array:
     """Return the knots whose multiplicity is `pick(multiplicities in a, in b)`: minimum, maximum or difference."""
     values = distinct(merged(a, b))[0]
     return np.repeat(values, pick(multiplicities(a, values), multiplicities(b, values)))

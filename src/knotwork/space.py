@@ -13,7 +13,6 @@ from knotwork import conventions
 from knotwork.arithmetic.arrays import Array, exact, in_arithmetic_of, real_array, require_finite, require_room, whole
 from knotwork.errors import KnotError, ParameterError
 from knotwork.knots import (
-    combine,
     distinct,
     merged,
     multiplicities,
@@ -22,6 +21,7 @@ from knotwork.knots import (
     require_multiplicity,
     sorted_knots,
     sorted_list,
+    with_multiplicities,
 )
 from knotwork.unrolled import Unrolled, reach, require_apart
 from knotwork.value import Frozen
@@ -288,7 +288,7 @@ class SplineSpace(Frozen):
 
     def _unrolled(self) -> Unrolled:
         if self.periodic:
-            return Unrolled.around(self.degree, self.knots)
+            return Unrolled.of_period(self.degree, self.knots)
         return Unrolled(self.degree, self.dimension, self.knots)
 
     @property
@@ -406,7 +406,7 @@ class SplineSpace(Frozen):
             raise KnotError(f"the {name} of spaces over {self.domain} and {other.domain}: expected equal domains")
         if not np.array_equal(self._outside, other._outside):
             raise KnotError(f"the {name} of spaces with different knots outside {self.domain}: clamp them first")
-        return type(self)(self.degree, combine(self.knots, other.knots, pick), periodic=self.periodic)
+        return type(self)(self.degree, with_multiplicities(self.knots, other.knots, pick), periodic=self.periodic)
 
     @property
     def _outside(self) -> Array:
@@ -505,7 +505,7 @@ class SplineSpace(Frozen):
             i = int(np.argmax(lacking))
             near = "" if found[i] else f"; the nearest knot is {nearest_knot(self.knots, values[i])}"
             raise KnotError(f"knot {values[i]} is there {found[i]} times; cannot remove it {counts[i]} times{near}")
-        kept = combine(self.knots, x, np.subtract)
+        kept = with_multiplicities(self.knots, x, np.subtract)
         n = 0 if self.periodic else self.degree
         if len(kept) < 2 * n + 2 or (kept[n], kept[-n - 1]) != self.domain:
             raise KnotError(f"without these knots the domain would no longer be [{a}, {b}]; expected knots inside it")

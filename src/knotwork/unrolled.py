@@ -38,7 +38,7 @@ class Unrolled(NamedTuple):
     period: tuple[Any, Any] | None = None
 
     @classmethod
-    def around(cls, degree: int, t: Array) -> Unrolled:
+    def of_period(cls, degree: int, t: Array) -> Unrolled:
         """Continue a period and its end around the seam: knot i + dimension is knot i + period."""
         N, k = len(t) - 1, degree + 1
         lo, hi = -k, N + 2 * k + 1

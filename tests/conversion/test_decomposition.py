@@ -14,7 +14,7 @@ import oracle
 import strategies as kinds
 from knotwork.conversion import decompose
 from knotwork.errors import KnotError
-from knotwork.knots import combine
+from knotwork.knots import with_multiplicities
 
 F = Fraction
 
@@ -44,7 +44,7 @@ def test_the_sum_is_the_spline(n, data):
         [F(x) for x in shared] + sorted({x + F(1, 2) for x in data.draw(own)} | {F(19, 2) + i for i in range(k)})
     )
     first, second = (kw.SplineSpace(n, np.array(t, dtype=object)) for t in (one, two))
-    space = kw.SplineSpace(n, combine(first.knots, second.knots, np.maximum))
+    space = kw.SplineSpace(n, with_multiplicities(first.knots, second.knots, np.maximum))
     f = kw.Spline(space, kinds.control_points((space.dimension, 2), 5))
     g, h = decompose(f, first, second)
     assert (g.space, h.space) == (first, second)

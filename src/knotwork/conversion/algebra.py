@@ -20,7 +20,7 @@ from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.face import insert
 from knotwork.insertion.pieces import to_bezier
-from knotwork.knots import combine, distinct, merged
+from knotwork.knots import distinct, merged, with_multiplicities
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -186,7 +186,7 @@ def _multiplied(f: Spline, g: Spline, times: Callable[[Array, Array], Array]) ->
 def _nets(f: Spline, targets: tuple[SplineSpace, ...]) -> Array:
     """Return the Bézier nets of a spline over all breaks of the targets."""
     for axis, (space, target) in enumerate(zip(f.spaces, targets, strict=True)):
-        f = insert(f, combine(target.breaks, space.breaks, np.subtract), axis)
+        f = insert(f, with_multiplicities(target.breaks, space.breaks, np.subtract), axis)
     return to_bezier(f)[0].view(np.ndarray)
 
 

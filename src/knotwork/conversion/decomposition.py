@@ -7,7 +7,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import KnotError
 from knotwork.insertion.face import insertion_matrix
-from knotwork.knots import combine
+from knotwork.knots import with_multiplicities
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
@@ -44,13 +44,13 @@ def decompose(spline: Spline, first: SplineSpace, second: SplineSpace) -> tuple[
     space, k = spline.space, first.order
     if any(each.periodic for each in (space, first, second)):
         raise KnotError("a period has no end beyond which a spline is zero; expected spaces that are not periodic")
-    shared = combine(first.knots, second.knots, np.minimum)
+    shared = with_multiplicities(first.knots, second.knots, np.minimum)
     if not first.degree == second.degree == space.degree or len(shared) != k:
         raise KnotError(
             f"spaces of degree {first.degree} and {second.degree} share {len(shared)} knots; expected degree "
             f"{space.degree} of both, and {space.order} knots"
         )
-    union = combine(first.knots, second.knots, np.maximum)
+    union = with_multiplicities(first.knots, second.knots, np.maximum)
     if not np.array_equal(union, space.knots):
         raise KnotError(f"{space!r} given; expected the knots of both spaces, {union.tolist()}")
     parts = [_on_the_line(each, space) for each in (first, second)]

@@ -11,7 +11,7 @@ from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.insertion.face import insertion_matrix
 from knotwork.insertion.merge import rows_of_matrix
-from knotwork.knots import combine, distinct, merged, multiplicities
+from knotwork.knots import distinct, merged, multiplicities, with_multiplicities
 from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace
 
@@ -80,7 +80,7 @@ def _refinement(space: SplineSpace, finer: SplineSpace) -> Banded:
     a, b = space.domain
     if (finer.knots[0], finer.knots[-1]) != (a, b):
         return conversion_matrix(space, finer)
-    new = combine(finer.knots, t[(t >= a) & (t <= b)], np.subtract)
+    new = with_multiplicities(finer.knots, t[(t >= a) & (t <= b)], np.subtract)
     lo = int(np.searchsorted(t, a, "left"))
     start, count, E = rows_of_matrix(t, new, space.dimension, n, lo, finer.dimension)
     return Banded.packed(start, count, E, space.dimension)

@@ -60,8 +60,8 @@ def close(spline: Spline, axis: int = 0, tolerance: Any = 0) -> Conversion[Splin
         raise ParameterError(f"parameter {axis} is periodic already; expected one with ends")
     opened = clamp(spline)
     t = opened.spaces[axis].knots
-    around = SplineSpace(space.degree, t[: len(t) - space.degree], periodic=True)  # the same points: the seam may jump
-    jumping = opened.with_axis(axis, around, opened.coefficients)
+    closed = SplineSpace(space.degree, t[: len(t) - space.degree], periodic=True)  # the same points: the seam may jump
+    jumping = opened.with_axis(axis, closed, opened.coefficients)
     return smoothest(jumping, jumping, axis, t[:1], tolerance, "the ends")
 
 

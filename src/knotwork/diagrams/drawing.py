@@ -28,7 +28,7 @@ class Box(NamedTuple):
     top: float
 
     @staticmethod
-    def around(x: float, y: float, width: float, height: float) -> Box:
+    def centred_at(x: float, y: float, width: float, height: float) -> Box:
         """Return the rectangle of this size about a centre."""
         return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
@@ -59,13 +59,13 @@ class Node:
         """The frame around the text, or the text of a dot."""
         if self.offset is not None:
             dx, dy = self.offset
-            return Box.around(self.x + dx, self.y + dy, LESSER * width(self.text), LESSER * HEIGHT)
-        return Box.around(self.x, self.y, width(self.text) + 2 * PADDING, HEIGHT + 0.1)
+            return Box.centred_at(self.x + dx, self.y + dy, LESSER * width(self.text), LESSER * HEIGHT)
+        return Box.centred_at(self.x, self.y, width(self.text) + 2 * PADDING, HEIGHT + 0.1)
 
     @property
     def name_box(self) -> Box:
         """The name below."""
-        return Box.around(self.x, self.box.bottom - 0.7, LESSER * width(self.name), LESSER * HEIGHT)
+        return Box.centred_at(self.x, self.box.bottom - 0.7, LESSER * width(self.name), LESSER * HEIGHT)
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class Diagram:
         """Return the rectangle of an edge's label."""
         a, b = self.nodes[edge.start], self.nodes[edge.end]
         x, y = a.x + edge.at * (b.x - a.x), a.y + edge.at * (b.y - a.y)
-        return Box.around(x, y, LESSER * width(edge.label) + 0.3, LESSER * HEIGHT)
+        return Box.centred_at(x, y, LESSER * width(edge.label) + 0.3, LESSER * HEIGHT)
 
     def labels(self) -> Iterator[tuple[str, Box]]:
         """Yield all that is written, and where."""

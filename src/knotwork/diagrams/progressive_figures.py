@@ -74,13 +74,13 @@ def _pairs(points: Iterable[Any]) -> tuple[tuple[float, float], ...]:
 def _dots(values: list[tuple[Value, Array, str]], paths: list[Path]) -> Iterable[Node]:
     """Yield the points with their labels where these cover least."""
     ink = [(x, y) for path in paths for x, y in _dense(path.points)]
-    taken = [Box.around(x, y, 0.8, 0.8) for _, (x, y), _ in values]
+    taken = [Box.centred_at(x, y, 0.8, 0.8) for _, (x, y), _ in values]
     for value, (x, y), kind in values:
         text = " ".join(label(knot) for knot in value.arguments)
         wide, tall = LESSER * width(text) / 2, LESSER * HEIGHT / 2
 
         def cost(place: tuple[float, float], x: float = x, y: float = y, w: float = wide, h: float = tall) -> float:
-            box = Box.around(x + place[0], y + place[1], 2 * w + 0.2, 2 * h + 0.1)
+            box = Box.centred_at(x + place[0], y + place[1], 2 * w + 0.2, 2 * h + 0.1)
             covered = sum(box.left < p < box.right and box.bottom < q < box.top for p, q in ink)
             return covered + 1000 * sum(box.meets(other) for other in taken) + math.hypot(*place)
 

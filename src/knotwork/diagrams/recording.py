@@ -14,7 +14,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import wrapped
 from knotwork.diagrams.symbols import Expression, Knot, knot, label
 from knotwork.errors import KnotError
-from knotwork.progressive.homogeneous import crossed
+from knotwork.progressive.homogeneous import cross_product
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,11 +46,11 @@ def combined(P: Value, Q: Value, a: Knot, b: Knot, u: Knot, order: list[Knot]) -
     arguments.remove(a)
     arguments.append(u)
     pairs = np.array([a, b, u], object)
-    denominator = crossed(pairs[1], pairs[0])
+    denominator = cross_product(pairs[1], pairs[0])
     if denominator == 0:
         raise KnotError(f"{label(a)} and {label(b)} cannot give way to {label(u)}: expected knots that differ")
     sign = -1 if denominator == -1 else 1  # which is not worth leaving out
-    factors: Any = sign * crossed(pairs[1], pairs[2]), sign * crossed(pairs[2], pairs[0])
+    factors: Any = sign * cross_product(pairs[1], pairs[2]), sign * cross_product(pairs[2], pairs[0])
     return Value(tuple(sorted(arguments, key=order.index)), (P, Q), factors)
 
 

@@ -134,7 +134,7 @@ def refine_net(U, W, stop, lo, P, out, rows, D):
                     combination(out[a, top + i], P[a, block.first[i] :], block.E[i], block.last[i], D)
 
 
-def refined(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> tuple[Array, Array]:
+def refined_blocks(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, rows: int) -> tuple[Array, Array]:
     """Return rows + n + 1 knots and `rows` control points from `lo` on after inserting the sorted knots W.
 
     P is (A, len, B). Raises if a knot occurs more than n + 1 times.

@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, exact, numbers, real_numbers
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.insertion.face import insert
-from knotwork.insertion.merge import refined
+from knotwork.insertion.merge import refined_blocks
 from knotwork.knots import distinct, multiplicities, sorted_knots
 from knotwork.linear.banded import along, as_blocks
 from knotwork.space import SplineSpace
@@ -277,7 +277,7 @@ def _with_full(space: SplineSpace, P: Array, full: tuple[Any, ...], first: int, 
     """
     n, t = space.degree, space.knots
     new = np.array([x for x in full for _ in range(n + 1 - space.multiplicity(x))], t.dtype)
-    return refined(t, new, space.dimension, n, P, first, end + len(new) - n - 1 - first)
+    return refined_blocks(t, new, space.dimension, n, P, first, end + len(new) - n - 1 - first)
 
 
 def _opened(space: SplineSpace, P: Array, axis: int) -> tuple[SplineSpace, Array]:
@@ -306,4 +306,4 @@ def _in_pieces(P: Array, axis: int, space: SplineSpace) -> tuple[Array, Array]:
     first, end = _range(space, *domain)
     breaks, counts = distinct(t[first:end])
     new, rows = np.repeat(breaks, n + 1 - counts), (len(breaks) - 1) * (n + 1)
-    return breaks, along(refined(t, new, space.dimension, n, as_blocks(P, axis), first, rows)[1], P, axis)
+    return breaks, along(refined_blocks(t, new, space.dimension, n, as_blocks(P, axis), first, rows)[1], P, axis)

@@ -7,9 +7,9 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
-from knotwork.insertion.merge import refined, rows_of_matrix
+from knotwork.insertion.merge import refined_blocks, rows_of_matrix
 from knotwork.insertion.single_knot import one_knot
-from knotwork.knots import combine
+from knotwork.knots import with_multiplicities
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -61,7 +61,7 @@ def _refined(spline: Spline, axis: int, new: Array) -> tuple[Array, Array]:
     P = unrolled.points(as_blocks(spline.coefficients, axis))
     rows = space.dimension + len(new)
     W, stop, lo = unrolled.refinement(new)
-    T, out = refined(unrolled.knots, W, stop, space.degree, P, lo, rows)
+    T, out = refined_blocks(unrolled.knots, W, stop, space.degree, P, lo, rows)
     if space.periodic:
         T = T[: rows + 1].copy()
     return T, along(out, spline.coefficients, axis)
@@ -81,7 +81,7 @@ def missing_knots(space: SplineSpace, refined: SplineSpace) -> Array:
         raise KnotError(f"{refined!r} does not refine {space!r}: expected equal degrees, both periodic or neither")
     if not space <= refined:
         raise KnotError(f"{refined!r} does not refine {space!r}: it lacks knots, or its domain differs")
-    new = combine(refined.knots, space.knots, np.subtract)
+    new = with_multiplicities(refined.knots, space.knots, np.subtract)
     a, b = space.domain
     if len(new) and (new[0] < a or new[-1] > b):
         raise KnotError(f"{refined!r} has new knots outside the domain [{a}, {b}]")

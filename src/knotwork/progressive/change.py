@@ -13,7 +13,7 @@ from knotwork.arithmetic.arrays import Array, whole
 from knotwork.errors import KnotError, ParameterError
 from knotwork.progressive import procedures
 from knotwork.progressive.curve import Curve
-from knotwork.progressive.homogeneous import beside, broken_at, pair
+from knotwork.progressive.homogeneous import broken_at, in_fitting_arithmetics, pair
 from knotwork.progressive.procedures import right_edge, triangle
 from knotwork.progressive.sequence import Sequence
 
@@ -96,7 +96,7 @@ def insert(curve: Curve, u: Any, times: int = 1) -> Insertion:
     if whole(times, "times", 1, ParameterError) > n:
         raise ParameterError(f"times = {times} given; degree {n} takes a knot at most {n} times")
     knot = pair(u, "knot", KnotError)
-    P, t, knot = beside(curve.points, curve.knots, knot)
+    P, t, knot = in_fitting_arithmetics(curve.points, curve.knots, knot)
     new = np.repeat(knot, times, axis=0)
     T = triangle(P, t, new)
     above = np.arange(times)
@@ -142,7 +142,7 @@ def change_basis(curve: Curve, sequence: Any, method: str = "auto") -> Curve:
         now = _FORMER[method]
         warnings.warn(f"method {method!r} is now called {now!r}", DeprecationWarning, stacklevel=2)
         method = now
-    P, t, u = beside(curve.points, curve.knots, target.homogeneous)
+    P, t, u = in_fitting_arithmetics(curve.points, curve.knots, target.homogeneous)
     change = _safest(t, u) if method == "auto" else METHODS[method]
     return curve.over(Sequence.trusted(u), np.ascontiguousarray(change(P, t, u)))
 

@@ -13,9 +13,9 @@ from knotwork.progressive import kernels
 from knotwork.progressive.homogeneous import (
     DELTA,
     affine,
-    alike,
-    beside,
     broken_at,
+    in_fitting_arithmetics,
+    in_one_arithmetic,
     pair,
     pairs,
     require_together,
@@ -68,7 +68,7 @@ class Curve(Frozen):
                 f"control points of shape {points.shape} given; degree {n} takes ({n + 1},) or ({n + 1}, d)"
             )
         require_finite(points, "control points", PointError)
-        points, t = beside(points, sequence.homogeneous)
+        points, t = in_fitting_arithmetics(points, sequence.homogeneous)
         self._fill(sequence if t is sequence.homogeneous else Sequence.trusted(t), points)
 
     def _fill(self, sequence: Sequence, control: Array) -> None:
@@ -190,9 +190,9 @@ class Curve(Frozen):
         A, shape = affine(a, "parameters")
         n = self.degree
         if A.dtype == object and not self.exact:
-            points, t = alike(self.points, self.knots, A)[:2]
+            points, t = in_one_arithmetic(self.points, self.knots, A)[:2]
             return self.over(Sequence.trusted(t), points).derivatives(a)
-        P, t, A, delta = beside(*self._newton_dual_form, A, pairs([DELTA] * n, "δ"))
+        P, t, A, delta = in_fitting_arithmetics(*self._newton_dual_form, A, pairs([DELTA] * n, "δ"))
         out = np.empty((n + 1, len(A), P.shape[1]), P.dtype)
         kernels.over(t, kernels.edge)(out, P, t, A, delta, np.empty_like(P), extent(P.shape[1]))
         return out.reshape(n + 1, *shape, *self.control.shape[1:])
@@ -239,7 +239,7 @@ class Curve(Frozen):
         blocked = left[left >= start] if way == "right" else right[right < start] + n + 1
         if len(blocked):
             raise KnotError(f"way {way!r} divides by the weight of knot {written(t[blocked[0]])}; the other way may go")
-        P, t = beside(self.points, t)
+        P, t = in_fitting_arithmetics(self.points, t)
         Q = np.empty((n + 2, P.shape[1]), P.dtype)
         kernels.over(t, kernels.integrate)(Q, P, t, start, extent(P.shape[1]))
         return self.over(Sequence.trusted(t), Q)

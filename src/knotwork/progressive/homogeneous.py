@@ -69,7 +69,7 @@ def require_together(what: str, *values: Any) -> None:
         raise ParameterError(f"{what}: the shapes do not broadcast: values of {shapes[0]} and {shapes[1]}") from None
 
 
-def alike(*arrays: Array) -> list[Array]:
+def in_one_arithmetic(*arrays: Array) -> list[Array]:
     """Return knots and parameters in one arithmetic: exact if any is, else complex if any is."""
     kinds = {a.dtype for a in arrays}
     if np.dtype(object) in kinds:
@@ -77,11 +77,11 @@ def alike(*arrays: Array) -> list[Array]:
     return [a.astype(np.complex128) for a in arrays] if np.dtype(np.complex128) in kinds else list(arrays)
 
 
-def beside(points: Array, *knots: Array) -> list[Array]:
+def in_fitting_arithmetics(points: Array, *knots: Array) -> list[Array]:
     """Return points, and knots in an arithmetic that goes with them: knots may be real where points are complex."""
     if any(a.dtype == object for a in (points, *knots)):
-        return alike(points, *knots)
-    knots = tuple(alike(*knots))
+        return in_one_arithmetic(points, *knots)
+    knots = tuple(in_one_arithmetic(*knots))
     return [points.astype(np.complex128) if knots[0].dtype == np.complex128 else points, *knots]
 
 
@@ -91,7 +91,7 @@ def written(knot: Any) -> str:
     return f"{t}" if w == 1 else "δ" if (t, w) == DELTA else f"({t}, {w})"
 
 
-def crossed(b: Array, a: Array) -> Array:
+def cross_product(b: Array, a: Array) -> Array:
     """Return b × a = b_t a_w - a_t b_w, the denominator of the combination in which a and b give way to u."""
     with np.errstate(all="ignore"):
         return cast(Array, b[..., 0] * a[..., 1] - a[..., 0] * b[..., 1])
@@ -101,7 +101,7 @@ def broken_at(t: Array) -> tuple[int, int] | None:
     """Return the first two knots, counted from 0, that keep t from being progressive; None if it is (§2.3.1)."""
     n = len(t) // 2
     for j in range(n):
-        same = np.flatnonzero(crossed(t[n + j], t[j:n]) == 0)
+        same = np.flatnonzero(cross_product(t[n + j], t[j:n]) == 0)
         if len(same):
             return j + int(same[0]), n + j
     return None

@@ -10,7 +10,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, exact, real_numbers
 from knotwork.errors import KnotError, ParameterError
 from knotwork.progressive.curve import Curve
-from knotwork.progressive.homogeneous import alike, crossed, pair, written
+from knotwork.progressive.homogeneous import cross_product, in_one_arithmetic, pair, written
 
 
 @dataclass(frozen=True)
@@ -106,5 +106,5 @@ def matches(p: Curve, q: Curve, knot: Any = None, tolerance: float = 0) -> Match
 
 def _has(curve: Curve, knot: Array) -> bool:
     """Tell whether one of the curve's knots is this one, up to a factor."""
-    knots, at = alike(curve.knots, knot)
-    return bool(np.any(crossed(knots, at[0]) == 0))
+    knots, at = in_one_arithmetic(curve.knots, knot)
+    return bool(np.any(cross_product(knots, at[0]) == 0))

@@ -11,7 +11,7 @@ from knotwork.arithmetic.kernel import extent, kernel
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.progressive.bases import flat_nodes
 from knotwork.progressive.curve import Curve
-from knotwork.progressive.homogeneous import affine, alike, beside
+from knotwork.progressive.homogeneous import affine, in_fitting_arithmetics, in_one_arithmetic
 from knotwork.progressive.kernels import over
 from knotwork.schemes import quotient
 
@@ -89,7 +89,7 @@ def divided_differences(nodes: Any, values: Any) -> Array:
     for i in range(2, len(x)):
         if x[i] != x[i - 1] and (x[: i - 1] == x[i]).any():
             raise KnotError(f"node {x[i]} is there again after another; expected equal nodes to stand together")
-    x, f = alike(x, f) if "c" in (x.dtype.kind, f.dtype.kind) else beside(x, f)
+    x, f = in_one_arithmetic(x, f) if "c" in (x.dtype.kind, f.dtype.kind) else in_fitting_arithmetics(x, f)
     rows = f.reshape(len(f), -1)
     c = np.empty_like(rows)
     over(x, differences)(c, x, rows, extent(rows.shape[1]))
@@ -113,7 +113,7 @@ def newton_dual_by_differences(nodes: Any, t: Any) -> Array:
     """
     x = flat_nodes(nodes)
     u, shape = affine(t, "parameters")
-    x, u = alike(x, u[:, 0])
+    x, u = in_one_arithmetic(x, u[:, 0])
     n = len(x)
     result = np.empty((len(u), n + 1), u.dtype)
     result[:, 0] = u - u + 1

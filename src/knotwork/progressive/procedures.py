@@ -11,7 +11,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
 from knotwork.progressive import kernels
-from knotwork.progressive.homogeneous import beside, crossed, written
+from knotwork.progressive.homogeneous import cross_product, in_fitting_arithmetics, written
 
 
 def repeated(u: Array, n: int) -> Array:
@@ -21,7 +21,7 @@ def repeated(u: Array, n: int) -> Array:
 
 def blossoms(points: Array, t: Array, arguments: Array) -> Array:
     """Return the blossom (m, d) at rows of arguments (m, n, 2)."""
-    P, t, U = beside(points, t, arguments)
+    P, t, U = in_fitting_arithmetics(points, t, arguments)
     out = np.empty((len(U), P.shape[1]), P.dtype)
     kernels.over(t, kernels.blossoms)(out, P, t, U, np.empty_like(P), extent(P.shape[1]))
     return out
@@ -29,7 +29,7 @@ def blossoms(points: Array, t: Array, arguments: Array) -> Array:
 
 def triangle(points: Array, t: Array, arguments: Array) -> Array:
     """Return the triangle T[r, q] of up to n arguments (r, 2); its rows beyond n - r hold nothing."""
-    P, t, U = beside(points, t, arguments)
+    P, t, U = in_fitting_arithmetics(points, t, arguments)
     T = np.empty((len(U) + 1, *P.shape), P.dtype)
     T[0] = P
     kernels.over(t, kernels.triangle)(T, t, U, extent(P.shape[1]))
@@ -54,7 +54,7 @@ def right_edge(T: Array) -> Array:
 
 def boehm(points: Array, t: Array, u: Array) -> Array:
     """Insert the new knots one at a time: 2n² combinations (§2.2.3)."""
-    P, t, u = beside(points, t, u)
+    P, t, u = in_fitting_arithmetics(points, t, u)
     n = len(t) // 2
     a, b = np.concatenate([t[:n], u[:n]]), np.concatenate([u[n:], t[n:]])
     for k in range(n):
@@ -69,7 +69,7 @@ def boehm(points: Array, t: Array, u: Array) -> Array:
 def goldman(points: Array, t: Array, u: Array) -> Array:
     """Go over t_1 … t_n u_{n+1} … u_2n: Goldman's two triangles, n(n + 1) combinations (§2.2.4)."""
     n = len(t) // 2
-    _, t, u = beside(points, t, u)
+    _, t, u = in_fitting_arithmetics(points, t, u)
     between = np.concatenate([t[:n], u[n:]])
     for j in range(n):
         _require_distinct("goldman", between[j:n], between[n + j : n + j + 1])
@@ -93,7 +93,7 @@ def oslo(points: Array, t: Array, u: Array) -> Array:
 
 def sablonniere(points: Array, t: Array, u: Array) -> Array:
     """Compute one tetrahedron: n(n + 1)(n + 5)/6 combinations, and no sequence on the way (§2.2.5)."""
-    P, t, u = beside(points, t, u)
+    P, t, u = in_fitting_arithmetics(points, t, u)
     n = len(t) // 2
     R, Q = np.stack([P, P]), np.empty_like(P)
     kernels.over(t, kernels.tetrahedron)(Q, R, t, t[n:], u, n, n, extent(P.shape[1]))
@@ -102,7 +102,7 @@ def sablonniere(points: Array, t: Array, u: Array) -> Array:
 
 def sablonniere_recursive(points: Array, t: Array, u: Array) -> Array:
     """Compute those rows of the tetrahedron alone that serve the most new points, by halves of halves (§2.2.5)."""
-    P, t, u = beside(points, t, u)
+    P, t, u = in_fitting_arithmetics(points, t, u)
     n = len(t) // 2
     rows = n.bit_length() + 2
     R = np.empty((rows, *P.shape), P.dtype)
@@ -114,7 +114,7 @@ def sablonniere_recursive(points: Array, t: Array, u: Array) -> Array:
 
 def _require_distinct(method: str, a: Array, b: Array) -> None:
     """Raise if a combination on the way would divide by zero."""
-    same = np.flatnonzero(crossed(b, a) == 0)
+    same = np.flatnonzero(cross_product(b, a) == 0)
     if len(same):
         x, y = written(a[same[0]]), written(np.broadcast_to(b, a.shape)[same[0]])
         raise KnotError(

@@ -10,7 +10,16 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, numbers, require_finite, whole
 from knotwork.errors import KnotError, ParameterError, PointError
 from knotwork.progressive import kernels
-from knotwork.progressive.homogeneous import affine, alike, beside, broken_at, crossed, pairs, require_together, written
+from knotwork.progressive.homogeneous import (
+    affine,
+    broken_at,
+    cross_product,
+    in_fitting_arithmetics,
+    in_one_arithmetic,
+    pairs,
+    require_together,
+    written,
+)
 from knotwork.progressive.procedures import blossoms, repeated
 from knotwork.value import Frozen
 
@@ -59,7 +68,7 @@ class Sequence(Frozen):
                 f"must differ for degree {self.degree}"
             )
         n = self.degree
-        if not self.exact and not np.isfinite(crossed(t[n:, None], t[:n])).all():
+        if not self.exact and not np.isfinite(cross_product(t[n:, None], t[:n])).all():
             raise KnotError(f"the knots reach so far that their differences overflow float64: {self!r}")
 
     def _fill(self, t: Array) -> None:
@@ -126,7 +135,7 @@ class Sequence(Frozen):
         if way not in ("down", "up"):
             raise ParameterError(f"way {way!r} given; expected 'down' or 'up'")
         u, shape = affine(t, "parameters")
-        knots, u = alike(self.homogeneous, u)
+        knots, u = in_one_arithmetic(self.homogeneous, u)
         n = self.degree
         if way == "down":
             b = np.empty((len(u), n + 1), u.dtype)
@@ -143,7 +152,7 @@ class Sequence(Frozen):
         ndarray, shape (*t.shape, n + 1)
         """
         u, shape = affine(t, "parameters")
-        knots, u = alike(self.homogeneous, u)
+        knots, u = in_one_arithmetic(self.homogeneous, u)
         psi = np.empty((len(u), self.degree + 1), u.dtype)
         kernels.polya(psi, knots, u)
         return psi.reshape(*shape, self.degree + 1)
@@ -171,7 +180,7 @@ class Sequence(Frozen):
         x, shape = affine(tau, "tau")
         if shape:
             raise ParameterError(f"tau of shape {shape} given; expected one number")
-        p, t, x = beside(p, self.homogeneous, x)
+        p, t, x = in_fitting_arithmetics(p, self.homogeneous, x)
         e = np.empty(n + 1, t.dtype)
         kernels.expansion(e, t[k : k + n], x[0, 0])
         weight = x[0, 1]  # (-1)^(n-r) (n-r)! / n!, here for r = n
