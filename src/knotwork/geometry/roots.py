@@ -22,7 +22,7 @@ from knotwork.geometry.exact_roots import roots
 from knotwork.geometry.exactly import above, below, exact_net
 from knotwork.geometry.pieces import TINY, UNIT, Pieces, coordinates, unrolling
 from knotwork.geometry.polygon_zeros import OPEN, Function, Room, enclosed, known, wanted, widest
-from knotwork.insertion.merge import refined
+from knotwork.insertion.merge import refined_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -181,7 +181,7 @@ def _with_knots(f: Function, new: Array, clamp: bool = False) -> Function:
     if clamp:
         first = int(np.searchsorted(f.t, f.t[n]))
         rows = int(np.searchsorted(f.t, f.t[N], "right")) + len(new) - first - n - 1
-    t, out = refined(f.t, new, N, n, P, first, rows)
+    t, out = refined_blocks(f.t, new, N, n, P, first, rows)
     return Function(t, np.ascontiguousarray(out[0, :, 0]), np.ascontiguousarray(out[0, :, 1]), f.K)
 
 
