@@ -14,7 +14,8 @@ import oracle
 import strategies as kinds
 from conversion.pairs import pairs, places
 from knotwork.conversion.certificate import Certificate, Difference, Tolerance, difference, lifted, rounding
-from knotwork.errors import ParameterError, RoundingWarning
+from knotwork.conversion.nesting import embedding
+from knotwork.errors import KnotError, ParameterError, RoundingWarning
 
 F = Fraction
 
@@ -119,6 +120,18 @@ def test_weights_that_are_lost_bound_nothing():
     assert difference(f, kw.insert(f, 1e-15)).largest > 1  # the weight 1 - 1e-15 cannot be told from 1
     negative = lifted(f, [S])._replace(coefficients=np.array([[0.0, -1], [1, 1]]))
     assert Certificate(f).difference(negative).largest == np.inf
+
+
+def test_rows_are_means_only_where_the_ends_are_clamped():
+    """Into a space that goes on beyond its domain weights are negative: rounding is not bounded there."""
+    S = kw.SplineSpace.clamped(2, 6)
+    loose = kw.SplineSpace(2, [-1, -0.5, *S.knots[2:-2], 1.5, 2])
+    f = kw.curve(np.arange(6.0), 2, S.knots)
+    assert embedding(S, loose).entries.min() < 0
+    with pytest.raises(KnotError, match="expected clamped ends"):
+        lifted(f, [loose])
+    assert lifted(kw.convert(f, loose).spline, [S]).coefficients[:, 0] == pytest.approx(f.coefficients)
+    assert embedding(loose, S).entries.min() >= 0
 
 
 def test_single_precision_is_measured_in_double():

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, exact, require_finite
-from knotwork.conversion.nesting import breaks_and_copies, common_refinement, embedding, space_over
+from knotwork.conversion.nesting import common_refinement, embedding, space_with_joints
 from knotwork.conversion.oslo import conversion_matrix, require_convertible
 from knotwork.errors import ParameterError, PointError
 from knotwork.insertion.face import insert
 from knotwork.insertion.pieces import to_bezier
-from knotwork.knots import distinct, merged, with_multiplicities
+from knotwork.knots import with_multiplicities
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -192,13 +192,7 @@ def _nets(f: Spline, targets: tuple[SplineSpace, ...]) -> Array:
 
 def _product_space(space: SplineSpace, other: SplineSpace) -> SplineSpace:
     """Return the smallest space, with clamped ends, that holds all products: as smooth as the less smooth at a knot."""
-    pairs = [breaks_and_copies(each) for each in (space, other)]
-    values = distinct(merged(pairs[0][0], pairs[1][0]))[0]
-    copies = np.zeros(len(values), int)
-    for (own, count), more in zip(pairs, (other.degree, space.degree), strict=True):
-        at = np.searchsorted(values, own)
-        copies[at] = np.maximum(copies[at], count + more)
-    return space_over(space.degree + other.degree, space.domain, values, copies, space.periodic)
+    return space_with_joints(space.degree + other.degree, (space, other.degree), (other, space.degree))
 
 
 def _in_pieces(space: SplineSpace) -> SplineSpace:

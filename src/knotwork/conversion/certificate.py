@@ -25,7 +25,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_arithmetic_of, real_numbers
 from knotwork.conversion.nesting import common_refinement, embedding
-from knotwork.errors import ParameterError, RoundingWarning
+from knotwork.errors import KnotError, ParameterError, RoundingWarning
 from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -104,8 +104,17 @@ def lifted(
 ) -> Lifted:
     """Return the coefficients of a spline over spaces that hold its own.
 
-    `matrix` leads from each space to a finer one; by default `embedding`, which takes clamped or periodic spaces.
+    `matrix` leads from each space to a finer one; by default `embedding`, whose rows are means only where the finer
+    space is periodic or has clamped ends.
+
+    Raises
+    ------
+    KnotError
+        If it is neither: negative weights could enlarge rounding beyond what is counted here.
     """
+    for space, finer in zip(spline.spaces, spaces, strict=True):
+        if matrix is None and space != finer and not finer.periodic and finer.domain != _ends(finer):
+            raise KnotError(f"{finer!r} given to measure a spline over; expected clamped ends, or a periodic space")
     matrix = matrix or embedding
     c, m = by_coordinate(spline), 0
     local = spline.rational and c.dtype != object
@@ -117,6 +126,10 @@ def lifted(
             if local:
                 sizes = largest_in_rows(A, sizes, axis, finer)
     return Lifted(c, sizes, m)
+
+
+def _ends(space: SplineSpace) -> tuple[Any, Any]:
+    return space.knots.item(0), space.knots.item(-1)
 
 
 def by_coordinate(spline: Spline) -> Array:

@@ -12,7 +12,7 @@ from knotwork.arithmetic.arrays import real_numbers
 from knotwork.conversion.certificate import difference, rounding
 from knotwork.conversion.elevation import elevate
 from knotwork.conversion.face import Conversion, convert
-from knotwork.conversion.nesting import breaks_and_copies, common_refinement
+from knotwork.conversion.nesting import common_refinement
 from knotwork.conversion.oslo import require_convertible
 from knotwork.conversion.smoothing import smoothest, within
 from knotwork.errors import ParameterError, PointError
@@ -100,7 +100,7 @@ def _merged(spaces: list[SplineSpace], near: Any) -> list[SplineSpace]:
     if not near:
         return spaces
     a, b = spaces[0].domain
-    found = [breaks_and_copies(space) for space in spaces]
+    found = [space.joints for space in spaces]
     values = np.concatenate([x[(x > a) & (x < b)] for x, _ in found])
     copies = np.concatenate([count[(x > a) & (x < b)] for x, count in found])
     order = np.argsort(values, kind="stable")

@@ -136,7 +136,7 @@ def _less(spline: Spline, result: Spline, axis: int, orders: Array, allowed: Tol
     unrolled = common_refinement(space, result.spaces[axis]).unrolled
     t, zero = unrolled.knots, unrolled.zero
     first, last = t[zero : zero + len(far)][far], t[zero + space.order :][: len(far)][far]
-    x = _breaks(space)
+    x = space.joints[0]
     near = np.zeros(len(x), bool)
     for turn in (0, 1) if space.periodic else (0,):
         y = x + turn * (space.domain[1] - space.domain[0])
@@ -196,17 +196,12 @@ def _closed(spline: Spline) -> Spline:
     return spline.with_axis(0, SplineSpace(n, knots, periodic=True), nets)
 
 
-def _breaks(space: SplineSpace) -> Array:
-    """Return where pieces meet: the breaks inside, or those of the half-open period."""
-    return space.breaks[:-1] if space.periodic else space.breaks[1:-1]
-
-
 def _smooth(space: SplineSpace, orders: Array) -> SplineSpace:
     """Return the space of the same pieces with so many continuous derivatives where they meet."""
     copies = np.maximum(space.degree - orders, 1 if space.periodic else 0)
     if space.periodic:
         copies[1:] = space.degree - orders[1:]
-    return space_over(space.degree, space.domain, _breaks(space), copies, space.periodic)
+    return space_over(space.degree, space.domain, space.joints[0], copies, space.periodic)
 
 
 def _orders(spline: Spline, smoothness: Any) -> list[Array]:
@@ -217,7 +212,7 @@ def _orders(spline: Spline, smoothness: Any) -> list[Array]:
         raise ParameterError(f"smoothness for {len(each)} parameters given; expected {k}")
     orders = []
     for space, values in zip(spline.spaces, each, strict=True):
-        count = len(_breaks(space))
+        count = len(space.joints[0])
         listed = list(values) if hasattr(values, "__len__") else [values] * count
         if len(listed) != count:
             raise ParameterError(f"smoothness at {len(listed)} breaks given; pieces meet at {count}")

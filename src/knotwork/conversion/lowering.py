@@ -10,7 +10,7 @@ from knotwork.arithmetic.arrays import Array, exact, whole
 from knotwork.arithmetic.kernel import kernel
 from knotwork.conversion.certificate import Tolerance
 from knotwork.conversion.face import Conversion, by_least_squares, concluded, measured, solved
-from knotwork.conversion.nesting import breaks_and_copies, common_refinement, embedding, space_over
+from knotwork.conversion.nesting import common_refinement, embedding, space_over
 from knotwork.errors import ParameterError
 from knotwork.linear.banded import Banded
 from knotwork.linear.least_squares import least_squares
@@ -89,7 +89,7 @@ def lower(
     allowed = None if tolerance is None else Tolerance(spline, tolerance)
     result, change = spline, measured(spline, spline)
     if times:
-        values, copies = breaks_and_copies(space)
+        values, copies = space.joints
         target = space_over(space.degree - times, space.domain, values, np.maximum(copies - times, 1), space.periodic)
         if ends == "keep" and (space.periodic or target.dimension == 1):
             raise ParameterError(

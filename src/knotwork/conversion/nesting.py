@@ -11,21 +11,9 @@ from knotwork.conversion.elevation import raised
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.insertion.face import insertion_matrix
 from knotwork.insertion.merge import rows_of_matrix
-from knotwork.knots import distinct, merged, multiplicities, with_multiplicities
+from knotwork.knots import distinct, multiplicities, with_multiplicities
 from knotwork.linear.banded import Banded
 from knotwork.space import SplineSpace
-
-
-def breaks_and_copies(space: SplineSpace) -> tuple[Array, Array]:
-    """Return the knots at which splines of the space may not be smooth, and how often each occurs.
-
-    Those inside the domain; of a period all, the seam at its start.
-    """
-    if space.periodic:
-        return distinct(space.knots[:-1])
-    a, b = space.domain
-    t = space.knots
-    return distinct(t[(t > a) & (t < b)])
 
 
 def space_over(degree: int, domain: tuple[Any, Any], values: Array, copies: Array, periodic: bool) -> SplineSpace:
@@ -42,7 +30,7 @@ def holds(target: SplineSpace, space: SplineSpace) -> bool:
 
     They do not show it where a period has so few that its splines are smoother than their degree tells.
     """
-    values, copies = breaks_and_copies(space)
+    values, copies = space.joints
     higher = target.degree - space.degree
     return higher >= 0 and bool((multiplicities(target.knots, values) >= copies + higher).all())
 
@@ -50,12 +38,18 @@ def holds(target: SplineSpace, space: SplineSpace) -> bool:
 def common_refinement(space: SplineSpace, other: SplineSpace) -> SplineSpace:
     """Return the smallest space with clamped ends that holds both, over the domain they share."""
     degree = max(space.degree, other.degree)
-    found = [breaks_and_copies(each) for each in (space, other)]
-    values = distinct(merged(found[0][0], found[1][0]))[0]
+    return space_with_joints(degree, (space, degree - space.degree), (other, degree - other.degree))
+
+
+def space_with_joints(degree: int, *given: tuple[SplineSpace, int]) -> SplineSpace:
+    """Return the space, with clamped ends, that has the joints of spaces over one domain, each so many times more."""
+    space = given[0][0]
+    values = distinct(np.sort(np.concatenate([each.joints[0] for each, _ in given])))[0]
     copies = np.zeros(len(values), int)
-    for each, (own, count) in zip((space, other), found, strict=True):
+    for each, more in given:
+        own, count = each.joints
         at = np.searchsorted(values, own)
-        copies[at] = np.maximum(copies[at], count + (degree - each.degree))
+        copies[at] = np.maximum(copies[at], count + more)
     return space_over(degree, space.domain, values, copies, space.periodic)
 
 
