@@ -24,7 +24,7 @@ from knotwork.linear.least_squares import least_squares
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline, require_spline
 
-#: norms of conversion matrices up to this one are small: at most four bits are lost
+#: norms of conversion matrices up to this one are small: errors grow by it at most, 2⁴, so that four bits are lost
 SMALL = 16
 How = Literal["auto", "oslo", "interpolation", "least-squares"]
 WAYS = get_args(How)

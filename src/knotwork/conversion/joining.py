@@ -236,6 +236,7 @@ def _found(spline: Spline, axis: int, allowed: Any) -> Array:
         left, right = np.append(len(x) - 2, left), np.append(0, right)
     short = np.minimum(length[left], length[right])
     order, smooth = np.full(len(left), -1), np.ones(len(left), bool)
+    # as in `certificate.rounding`; each difference at most doubles it
     rounded = 0 if P.dtype == object else 8 * (n + 1) * np.finfo(P.dtype).eps * size
     for j in range(n + 1):
         scale = [((short / length[side]) ** j)[None, :, None] for side in (left, right)]

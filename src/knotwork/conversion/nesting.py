@@ -28,7 +28,7 @@ def space_over(degree: int, domain: tuple[Any, Any], values: Array, copies: Arra
 def holds(target: SplineSpace, space: SplineSpace) -> bool:
     """Tell whether knots show that every spline of `space` lies in `target`, as functions on the domain they share.
 
-    They do not show it where a period has so few that its splines are smoother than their degree tells.
+    A false may be wrong for a period with fewer knots than its degree: its splines are smoother than the knots tell.
     """
     values, copies = space.joints
     higher = target.degree - space.degree

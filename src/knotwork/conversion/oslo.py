@@ -35,7 +35,10 @@ def size_of_dual(t, i, n, a, b, z):
 
 @kernel
 def beta(t, i, n, a, b, enough):
-    """Return ‖ψ_i‖ on [a, b] over (b − a)ⁿ, floats (5.30); or something as large as `enough`, if it is that large.
+    """Return ‖ψ_i‖ on [a, b] over (b − a)ⁿ, floats (5.30).
+
+    Who looks for the least of several need not know how much larger the others are: once a value of at least `enough`
+    is found, it is returned in place of the maximum.
 
     Between neighbouring roots log |ψ_i| is concave: its slope Σ 1 / (z − root) is halved down to zero.
     """

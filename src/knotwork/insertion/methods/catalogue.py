@@ -79,13 +79,17 @@ class Method:
         return spline.with_axis(axis, refined, along(out, spline.coefficients, axis))
 
     def matrix(self, space: SplineSpace, refined: SplineSpace) -> Banded:
-        """Return the insertion matrix as this method finds it: from n + 1 colours of unit points; one of each a row."""
+        """Return the insertion matrix as this method finds it.
+
+        Column j is what the method makes of points of which point j is 1 and the others 0. A row has n + 1 neighbouring
+        entries; so columns j, j + n + 1, … never meet in a row, and one coordinate of the points does for all of them.
+        """
         new, n = missing_knots(space, refined), space.degree
         problem, part = problem_of(Spline.trusted((space,), np.arange(space.dimension)), 0, new)
         owner = problem.P[:, 0]
-        colours = np.zeros((len(owner), n + 1), int)
-        colours[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
-        problem = Problem(problem.U, problem.W, colours * problem.one, n)
+        units = np.zeros((len(owner), n + 1), int)
+        units[np.arange(len(owner)), np.arange(len(owner)) % (n + 1)] = 1
+        problem = Problem(problem.U, problem.W, units * problem.one, n)
         columns = (problem.columns[part] - n)[:, None] + np.arange(n + 1)
         entries = np.take_along_axis(self.points(problem)[part], columns % (n + 1), axis=1)
         first = owner[columns[:, 0]]

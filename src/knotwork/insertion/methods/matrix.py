@@ -41,8 +41,10 @@ def columns(E, U, W, interval, at, where, s, c):
     """Find every column by Boehm's algorithm for the control points δ_ij, without the combinations of zeros (§4.17).
 
     New knot w lies in old interval[w]; column j begins at row at[j]. Knots in the first interval of B-spline j go in in
-    decreasing order, those in the others in increasing order: that meets the most zeros. s is room for knots, c for a
-    column of points with one coordinate; its last two rows are 1 and the 0 beside the column.
+    decreasing order, those in the others in increasing order: that meets the most zeros.
+
+    s is room for knots, c for a column: points of one coordinate. Behind these c holds a 1, and a 0 that stands for the
+    points before the first and after the last.
     """
     n, one, beside, D = E.shape[1] - 1, c[len(c) - 2, 0], len(c) - 1, c[0]
     for i in range(len(E)):
