@@ -29,18 +29,17 @@ def insert_one(spline: Spline, u: float, axis: int) -> Spline:
         u = space.new_knots(u).item()  # an end that was missed by rounding, or an error
     blocks = as_blocks(P, axis)
     A, _, B = blocks.shape
-    W = np.empty((A, N + 1, B), P.dtype)
-    s = np.empty(N + n + 2)
+    T, S = np.empty(N + n + 2), np.empty((A, N + 1, B), P.dtype)
     lo, hi = 0, N
     if A == 1 and LONG[one_knot.loaded] < N:
         q = min(max(int(t.searchsorted(u, "right")) - 1, n), N - 1)
         lo, hi = max(q - n - 1, 0), min(q + n + 2, N)
-        W[:, :lo], W[:, hi + 1 :] = blocks[:, :lo], blocks[:, hi:]
-        s[:lo], s[hi + n + 2 :] = t[:lo], t[hi + n + 1 :]
-    m = one_knot(t[lo : hi + n + 1], blocks[:, lo:hi], u, s[lo : hi + n + 2], W[:, lo : hi + 1], extent(B))
+        S[:, :lo], S[:, hi + 1 :] = blocks[:, :lo], blocks[:, hi:]
+        T[:lo], T[hi + n + 2 :] = t[:lo], t[hi + n + 1 :]
+    m = one_knot(t[lo : hi + n + 1], blocks[:, lo:hi], u, T[lo : hi + n + 2], S[:, lo : hi + 1], extent(B))
     if m > n:
         raise KnotError(f"knot {u} has multiplicity {m + 1}; degree {n} allows at most {n + 1}")
-    return spline.with_axis(axis, SplineSpace.trusted(n, s), along(W, P, axis))
+    return spline.with_axis(axis, SplineSpace.trusted(n, T), along(S, P, axis))
 
 
 def refine(spline: Spline, axis: int, new: Array) -> Spline:

@@ -8,8 +8,8 @@ from knotwork.schemes import combine, copy, copy_points
 
 
 @kernel
-def one_knot(t, P, u, s, W, D):
-    """Insert u into each curve P[a]: the new knots go to s, the new points to W[a]; return how often u was a knot.
+def one_knot(t, P, u, T, S, D):
+    """Insert u into each curve P[a]: the new knots go to T, the new points to S[a]; return how often u was a knot.
 
     Nothing is done where u was a knot more than n times. u lies in the domain; where it is its right end, it goes into
     the last interval that is not empty.
@@ -18,9 +18,9 @@ def one_knot(t, P, u, s, W, D):
     q = last_at_most(t, n, last, u)
     m = copies(t, q, u)
     if m <= n:
-        put_in(s, t, q, u)
+        put_in(T, t, q, u)
         for a in range(len(P)):
-            boehm(W[a], P[a], t, n, q, u, D)
+            boehm(S[a], P[a], t, n, q, u, D)
     return m
 
 
@@ -37,22 +37,22 @@ def copies(t, q, u):
 
 
 @kernel
-def put_in(s, t, q, u):
-    """s = t_0 … t_q, u, t_{q+1} …"""
+def put_in(T, t, q, u):
+    """T = t_0 … t_q, u, t_{q+1} …"""
     for i in range(q + 1):
-        s[i] = t[i]
-    s[q + 1] = u
+        T[i] = t[i]
+    T[q + 1] = u
     for i in range(q + 1, len(t)):
-        s[i + 1] = t[i]
+        T[i + 1] = t[i]
 
 
 @kernel
-def boehm(W, P, t, n, q, u, D):
-    """W_i = B(t_{i+1}, …, u, …, t_{i+n-1}) for q - n < i <= q, one combination each; the rest are copies (§4.5)."""
-    copy_points(W, P, q - n + 1, D)
+def boehm(S, P, t, n, q, u, D):
+    """S_i = B(t_{i+1}, …, u, …, t_{i+n-1}) for q - n < i <= q, one combination each; the rest are copies (§4.5)."""
+    copy_points(S, P, q - n + 1, D)
     for i in range(q - n + 1, q + 1):
         if t[i] == u:
-            copy(W[i], P[i - 1], D)
+            copy(S[i], P[i - 1], D)
         else:
-            combine(W[i], P[i - 1], P[i], t[i], t[i + n], u, D)
-    copy_points(W[q + 1 :], P[q:], len(P) - q, D)
+            combine(S[i], P[i - 1], P[i], t[i], t[i + n], u, D)
+    copy_points(S[q + 1 :], P[q:], len(P) - q, D)
