@@ -35,7 +35,8 @@ def diagram(
     ----------
     name : str
         A procedure of one polynomial segment, one of `SCHEMES` (chapters 1 and 2), or a method of
-        `knotwork.insertion.METHODS` that makes points from points (chapters 3 and 4).
+        `knotwork.insertion.METHODS` that makes points from points (chapters 3 and 4). Some algorithms are both:
+        "goldman" inserts knots, "goldman-change" changes the basis of a segment.
     degree : int
         At least 1.
     knots : iterable, optional
