@@ -104,6 +104,11 @@ def test_the_face_of_the_command(run):
         "lower",
         "split",
         "trim",
+        "distance",
+        "flatten",
+        "length",
+        "sample",
+        "zeros",
     }
 
 

@@ -1,0 +1,60 @@
+"""The commands that measure curves."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+import knotwork as kw
+from knotwork.cli import main
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    kw.write("line.json", kw.curve([[0.0, 0], [4, 0]], 1))
+    kw.write("arch.json", kw.curve([[0.0, 0], [2, 2], [4, 0]], 2))
+    kw.write("f.json", kw.curve([-1.0, 1], 1))
+
+    def run(*words, code=0):
+        result = CliRunner().invoke(main, words)
+        assert result.exit_code == code, result.output
+        return result
+
+    return run
+
+
+def test_flatten(run):
+    told = json.loads(run("flatten", "arch.json", "-t", "0.01", "-o", "lines.json", "--json").stdout)
+    lines = kw.read("lines.json")[0]
+    assert lines.degree == (1,)
+    assert len(lines.points) == told["vertices"][0]
+    assert told["bound"] <= 0.01
+    assert kw.distance(lines, kw.read("arch.json")[0]).hausdorff.low <= 0.01
+    assert "vertices written" in run("flatten", "arch.json", "-t", "1%", "-o", "lines.csv").stdout
+
+
+def test_sample(run):
+    assert run("sample", "line.json", "--at", "0.25").stdout.splitlines() == ["curve,u,x,y", "0,0.25,1.0,0.0"]
+    assert run("sample", "line.json", "--number", "3").stdout.splitlines()[2] == "0,0.5,2.0,0.0"
+    assert run("sample", "arch.json", "--by-length", "3").stdout.splitlines()[2].startswith("0,0.5")
+    assert "one of" in run("sample", "line.json", code=2).stderr
+
+
+def test_zeros(run):
+    name, low, high, multiplicity = run("zeros", "f.json").stdout.split()[-4:]
+    assert (name, multiplicity) == ("0", "1")
+    assert float(low) <= 0.5 <= float(high) <= float(low) + 1e-14
+    told = json.loads(run("zeros", "arch.json", "--coordinate", "1", "--json").stdout)
+    assert [z["low"] for z in told["splines"][0]["zeros"]] == [0, 1]
+    assert run("zeros", "line.json", "--coordinate", "1").stdout.split()[-1] == "throughout"
+    assert "--coordinate" in run("zeros", "arch.json", code=1).stderr
+
+
+def test_length_and_distance(run):
+    assert json.loads(run("length", "line.json", "--json").stdout)["lengths"][0]["value"] == 4
+    low, high = json.loads(run("distance", "line.json", "arch.json", "--json").stdout)[0]["hausdorff"]
+    assert low <= 1 <= high
+    assert "Hausdorff" in run("distance", "line.json", "arch.json").stdout
