@@ -72,6 +72,7 @@ FORMATS = (
         needs="fonttools",
         shapes=True,
     ),
+    Format("cad.step", "STEP", (".stp", ".step"), "curves and surfaces, B-splines in place", "curves and surfaces"),
 )
 SUFFIXES = {suffix: each for each in FORMATS for suffix in each.suffixes}
 #: where files of other suffixes can come from

@@ -1,0 +1,345 @@
+"""The curves and surfaces among the entities of a STEP file, as splines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.errors import FileError
+from knotwork.files.cad.shapes import spline_of
+from knotwork.files.cad.step.syntax import Text
+from knotwork.geometry import analytic
+from knotwork.geometry.analytic import Frame
+from knotwork.insertion import trim
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
+
+#: entities may refer to each other so deep
+DEEP = 40
+CURVES = {
+    "LINE", "CIRCLE", "ELLIPSE", "HYPERBOLA", "PARABOLA", "POLYLINE", "TRIMMED_CURVE", "COMPOSITE_CURVE",
+    "B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE", "UNIFORM_CURVE", "QUASI_UNIFORM_CURVE",
+    "SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE",
+}  # fmt: skip
+SURFACES = {
+    "PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE",
+    "DEGENERATE_TOROIDAL_SURFACE", "SURFACE_OF_LINEAR_EXTRUSION", "SURFACE_OF_REVOLUTION",
+    "RECTANGULAR_TRIMMED_SURFACE", "B_SPLINE_SURFACE_WITH_KNOTS", "BEZIER_SURFACE", "UNIFORM_SURFACE",
+    "QUASI_UNIFORM_SURFACE",
+}  # fmt: skip
+
+
+class End(NamedTuple):
+    """Where a curve is cut: a parameter or a point."""
+
+    parameter: float | None
+    point: Array | None
+
+
+class Geometry:
+    """Makes splines of entities."""
+
+    def __init__(self, text: Text, radians: float = 1.0) -> None:
+        self.text = text
+        #: how many radians the unit of angles is
+        self.radians = radians
+        self._path: list[int] = []
+
+    @contextmanager
+    def within(self, key: int) -> Iterator[dict[str, list[Any]]]:
+        """Read an entity, unless it is a part of itself; what is wrong with it is told with its number."""
+        if (key in self._path and key != self._path[-1]) or len(self._path) > DEEP:
+            raise FileError(f"#{key} is a part of itself, or more than {DEEP} deep")
+        self._path.append(key)
+        try:
+            yield self.text.record(key)
+        except FileError:
+            raise
+        except (TypeError, ValueError, IndexError, KeyError, np.linalg.LinAlgError) as exc:
+            raise FileError(f"#{key}: {exc}") from exc
+        finally:
+            self._path.pop()
+
+    def kind(self, key: int) -> str:
+        """Return what an entity is; of one made of several, the name that tells."""
+        name = self.text.name(key)
+        if name:
+            return name
+        names = self.text.record(key)
+        if "B_SPLINE_CURVE" in names:
+            return "B_SPLINE_CURVE_WITH_KNOTS"
+        if "B_SPLINE_SURFACE" in names:
+            return "B_SPLINE_SURFACE_WITH_KNOTS"
+        return next(iter(names), "")
+
+    # ---- points and frames ---------------------------------------------------------------------------------------
+
+    def point(self, key: int) -> Array:
+        """Return a point in space."""
+        p = self.text.point(key)
+        if len(p) != 3 or not all(map(math.isfinite, p)):
+            raise FileError(f"#{key} is a point of {len(p)} coordinates; expected 3 finite ones")
+        return np.array(p)
+
+    def vertex(self, key: int) -> Array:
+        """Return the point of a vertex, or that of a point."""
+        if self.text.name(key) == "VERTEX_POINT":
+            key = self.text.record(key)["VERTEX_POINT"][1]
+        return self.point(key)
+
+    def frame(self, key: int) -> Frame:
+        """Return a placement."""
+        with self.within(key) as record:
+            ((_, (_, origin, *axes)),) = record.items()
+            return Frame.at(self.point(origin), *(None if a is None else self.text.point(a) for a in axes))
+
+    def vector(self, key: int) -> Array:
+        """Return a vector, or a direction."""
+        with self.within(key) as record:
+            if "VECTOR" not in record:
+                return self.point(key)
+            _, direction, size = record["VECTOR"]
+            d = self.point(direction)
+            found: Array = d / np.linalg.norm(d) * float(size)
+            return found
+
+    # ---- curves --------------------------------------------------------------------------------------------------
+
+    def curves(self, key: int) -> list[tuple[int, Spline]]:
+        """Return a curve that ends by itself; one that is made of several as those."""
+        with self.within(key) as record:
+            kind = self.kind(key)
+            if kind == "COMPOSITE_CURVE":
+                parts = [self.text.record(part)["COMPOSITE_CURVE_SEGMENT"][2] for part in record[kind][1]]
+                return [found for part in parts for found in self.curves(part)]
+            if kind in ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"):
+                return self.curves(record[kind][1])
+            if kind == "TRIMMED_CURVE":
+                _, basis, first, last, same, *_ = record[kind]
+                return [(basis, self.between(basis, self._end(first), self._end(last), same == ".T."))]
+            if kind == "POLYLINE":
+                points = np.array([self.point(p) for p in record[kind][1]])
+                return [(key, Spline(SplineSpace.clamped(1, len(points)), points))]
+            if kind in ("CIRCLE", "ELLIPSE"):
+                return [(key, self._conic(record, kind)(0.0, 2 * math.pi))]
+            if "CURVE" in kind and kind in CURVES:
+                return [(key, self.bspline(key))]
+            raise FileError(f"#{key} is a {kind} without ends" if kind in CURVES else f"#{key}: {kind} is not read")
+
+    def curve(self, key: int) -> Spline:
+        """Return one curve that ends by itself."""
+        found = self.curves(key)
+        if len(found) != 1:
+            raise FileError(f"#{key} is made of {len(found)} curves; expected one")
+        return found[0][1]
+
+    def _end(self, trims: list[Any]) -> End:
+        parameter = next((float(t[1][0]) for t in trims if type(t) is tuple), None)
+        point = next((self.point(t) for t in trims if type(t) is not tuple), None)
+        return End(parameter, point)
+
+    def between(self, key: int, first: End, last: End, same: bool) -> Spline:
+        """Return the part of a curve between two ends, in the direction of the curve."""
+        if not same:
+            first, last = last, first
+        with self.within(key) as record:
+            kind = self.kind(key)
+            if kind in ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"):
+                return self.between(record[kind][1], first, last, True)
+            if kind == "LINE":
+                p, v = self.point(record[kind][1]), self.vector(record[kind][2])
+                start_, stop_ = (p + (e.parameter or 0.0) * v if e.point is None else e.point for e in (first, last))
+                return analytic.line(start_, stop_)
+            if kind in ("CIRCLE", "ELLIPSE"):
+                start, stop = (self._angle(record, kind, e) for e in (first, last))
+                turn = math.remainder(stop - start, 2 * math.pi)
+                return self._conic(record, kind)(start, start + (turn if turn > 1e-12 else turn + 2 * math.pi))
+            if kind in ("HYPERBOLA", "PARABOLA"):
+                start, stop = (self._along(record, kind, e) for e in (first, last))
+                return self._conic(record, kind)(min(start, stop), max(start, stop))
+            found = self.curve(key)
+            if first.parameter is not None and last.parameter is not None:
+                a, b = found.space.domain
+                first_, last_ = max(a, first.parameter), min(b, last.parameter)
+                return trim(found, first_, last_) if a <= first_ < last_ <= b else found
+            return found
+
+    def _local(self, record: dict[str, list[Any]], kind: str, end: End) -> Array:
+        _, place, *sizes = record[kind]
+        if end.point is None:
+            raise FileError(f"a {kind} is cut at nothing; expected a parameter or a point")
+        at: Array = self.frame(place).local(end.point) / [float(sizes[0]), float(sizes[-1]), 1.0]
+        return at
+
+    def _angle(self, record: dict[str, list[Any]], kind: str, end: End) -> float:
+        if end.parameter is not None:
+            return end.parameter * self.radians
+        x, y, _ = self._local(record, kind, end)
+        return math.atan2(y, x)
+
+    def _along(self, record: dict[str, list[Any]], kind: str, end: End) -> float:
+        if end.parameter is not None:
+            return end.parameter
+        y = float(self._local(record, kind, end)[1])
+        return math.asinh(y) if kind == "HYPERBOLA" else y / 2
+
+    def _conic(self, record: dict[str, list[Any]], kind: str) -> Callable[[float, float], Spline]:
+        _, place, *sizes = record[kind]
+        O, x, y, _ = self.frame(place)
+        a, b = float(sizes[0]), float(sizes[-1])
+        if not (a > 0 and b > 0):
+            raise FileError(f"a {kind} of size {a} and {b}; expected positive numbers")
+        if kind == "PARABOLA":
+            return lambda start, stop: analytic.parabola(O, a * x, 2 * a * y, start, stop)
+        make = analytic.hyperbola if kind == "HYPERBOLA" else analytic.ellipse
+        return lambda start, stop: make(O, a * x, b * y, start, stop)
+
+    def bspline(self, key: int) -> Spline:
+        """Return a B-spline curve or surface, as its entity says."""
+        with self.within(key) as record:
+            names = set(record)
+            surface = any("SURFACE" in name for name in names)
+            k, stem = (2, "SURFACE") if surface else (1, "CURVE")
+            base, knots = record.get(f"B_SPLINE_{stem}"), record.get(f"B_SPLINE_{stem}_WITH_KNOTS")
+            if base is None:  # all in one entity
+                whole = next(iter(record.values()))
+                cut = 8 if surface else 6
+                base, knots = whole[1:cut], whole[cut:] or None
+            degrees, net = base[:k], base[k]
+            points = np.array(
+                [[self.point(p) for p in row] for row in net] if surface else [self.point(p) for p in net]
+            )
+            form = next((f for f in ("BEZIER", "QUASI_UNIFORM", "UNIFORM") if f"{f}_{stem}" in names), "")
+            spaces = []
+            for axis, degree in enumerate(degrees):
+                n = points.shape[axis]
+                given = None if knots is None else (knots[k + axis], knots[axis])
+                spaces.append(_space(int(degree), n, given, form))
+            rational = record.get(f"RATIONAL_B_SPLINE_{stem}")
+            weights = None if rational is None else np.array(rational[0], np.float64)
+            if weights is not None and weights.shape != points.shape[:-1]:
+                raise FileError(f"#{key} has weights of shape {weights.shape}; points are {points.shape[:-1]}")
+            return spline_of(spaces, points, weights)
+
+    # ---- surfaces ------------------------------------------------------------------------------------------------
+
+    def surface(self, key: int, hull: Array) -> Spline:
+        """Return a surface: one without ends as large as the points of its boundary need."""
+        with self.within(key) as record:
+            kind = self.kind(key)
+            if "B_SPLINE" in kind or kind in ("BEZIER_SURFACE", "UNIFORM_SURFACE", "QUASI_UNIFORM_SURFACE"):
+                return self.bspline(key)
+            args = record.get(kind, [])
+            if kind == "RECTANGULAR_TRIMMED_SURFACE":
+                return self._trimmed(*args[1:6])
+            if kind == "SURFACE_OF_LINEAR_EXTRUSION":
+                return self._extruded(args[1], self.vector(args[2]), hull)
+            if kind == "SURFACE_OF_REVOLUTION":
+                return self._turned(args[1], args[2], hull)
+            if kind not in SURFACES:
+                raise FileError(f"#{key}: {kind} is not read")
+            frame = self.frame(args[1])
+            if kind in ("PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE"):
+                if not len(hull):
+                    raise FileError(f"#{key} is a {kind} without ends")
+                low, high = (f(frame.local(hull), axis=0) for f in (np.min, np.max))
+                return self._quadric(kind, frame, args[2:], [low[0], high[0]], [low[1], high[1]], [low[2], high[2]])
+            return self._quadric(kind, frame, args[2:], [], [], [])
+
+    def _quadric(
+        self, kind: str, frame: Frame, sizes: list[Any], x: list[float], y: list[float], z: list[float]
+    ) -> Spline:
+        turn = (0.0, 2 * math.pi)
+        numbers = [float(s) for s in sizes if not isinstance(s, str)]
+        if kind == "PLANE":
+            return analytic.plane(frame, x, y)
+        if kind == "CYLINDRICAL_SURFACE":
+            return analytic.cone(frame, numbers[0], 0.0, turn, z)
+        if kind == "CONICAL_SURFACE":
+            angle = numbers[1] * self.radians
+            apex = -numbers[0] / math.tan(angle)
+            z = [max(apex, z[0]), z[1]] if angle > 0 else [z[0], min(apex, z[1])]
+            return analytic.cone(frame, numbers[0], angle, turn, z)
+        if kind == "SPHERICAL_SURFACE":
+            return analytic.torus(frame, 0.0, numbers[0], turn, (-math.pi / 2, math.pi / 2))
+        return analytic.torus(frame, numbers[0], numbers[1], turn, turn)
+
+    def _extruded(self, profile: int, direction: Array, hull: Array) -> Spline:
+        if not len(hull):
+            raise FileError("a surface without ends")
+        if self.kind(profile) == "LINE":
+            record = self.text.record(profile)["LINE"]
+            p, v = self.point(record[1]), self.vector(record[2])
+            at = np.linalg.lstsq(np.column_stack([v, direction]), (hull - p).T, rcond=None)[0]
+            (u0, v0), (u1, v1) = at.min(axis=1), at.max(axis=1)
+            return analytic.extrusion(analytic.line(p + u0 * v, p + u1 * v, u0, u1), direction, v0, v1)
+        curve = self.curve(profile)
+        unit = direction / (direction @ direction)
+        far, near = hull @ unit, curve.points @ unit
+        return analytic.extrusion(curve, direction, far.min() - near.max(), far.max() - near.min())
+
+    def _turned(self, profile: int, axis: int, hull: Array) -> Spline:
+        with self.within(axis) as record:
+            _, origin, direction = record["AXIS1_PLACEMENT"]
+            O, z = self.point(origin), self.point(direction) if direction is not None else np.array([0.0, 0, 1])
+        if self.kind(profile) == "LINE":
+            record = self.text.record(profile)
+            p, v = self.point(record["LINE"][1]), self.vector(record["LINE"][2])
+            if not v @ z or not len(hull):
+                raise FileError("a surface of a line across the axis, without ends")
+            t = (hull - p) @ z / (v @ z)
+            return analytic.revolution(analytic.line(p + t.min() * v, p + t.max() * v), O, z)
+        return analytic.revolution(self.curve(profile), O, z)
+
+    def _trimmed(self, basis: int, *ends: float) -> Spline:
+        u, v = sorted(map(float, ends[:2])), sorted(map(float, ends[2:]))
+        with self.within(basis) as record:
+            kind = self.kind(basis)
+            if "B_SPLINE" in kind:
+                found = self.bspline(basis)
+                for axis, (a, b) in enumerate((u, v)):
+                    a, b = max(a, found.spaces[axis].domain[0]), min(b, found.spaces[axis].domain[1])
+                    found = trim(found, a, b, axis) if a < b else found
+                return found
+            if kind not in SURFACES or kind.startswith("SURFACE_OF") or kind == "RECTANGULAR_TRIMMED_SURFACE":
+                raise FileError(f"#{basis}: {kind} with parameters as ends is not read")
+            frame, sizes = self.frame(record[kind][1]), [float(s) for s in record[kind][2:] if not isinstance(s, str)]
+            if kind == "PLANE":
+                return analytic.plane(frame, u, v)
+            turn = [x * self.radians for x in u]
+            if kind == "CYLINDRICAL_SURFACE":
+                return analytic.cone(frame, sizes[0], 0.0, turn, v)
+            if kind == "CONICAL_SURFACE":
+                return analytic.cone(frame, sizes[0], sizes[1] * self.radians, turn, v)
+            around = [x * self.radians for x in v]
+            if kind == "SPHERICAL_SURFACE":
+                return analytic.torus(frame, 0.0, sizes[0], turn, around)
+            return analytic.torus(frame, sizes[0], sizes[1], turn, around)
+
+
+def _space(degree: int, n: int, given: tuple[list[float], list[int]] | None, form: str) -> SplineSpace:
+    """Return the space of n points: of knots with multiplicities, or of a form that needs none."""
+    if not 1 <= degree < n:
+        raise FileError(f"{n} points of degree {degree}; expected more points than the degree, which is 1 or more")
+    if given is not None:
+        knots, counts = given
+        if len(knots) != len(counts) or min(counts) < 1 or sum(counts) != n + degree + 1:
+            raise FileError(
+                f"{len(knots)} knots with multiplicities {counts[:8]} given; {n} points of degree {degree} take "
+                f"{n + degree + 1} knots"
+            )
+        return SplineSpace(degree, np.repeat(np.array(knots, np.float64), counts))
+    if form == "UNIFORM":
+        return SplineSpace(degree, np.arange(-degree, n + 1, dtype=np.float64))
+    if form == "BEZIER":
+        if (n - 1) % degree:
+            raise FileError(f"{n} points of Bézier pieces of degree {degree}")
+        return SplineSpace.bezier(degree, np.arange((n - 1) // degree + 1))
+    inner = np.arange(1, n - degree)
+    ends = np.zeros(degree + 1), np.full(degree + 1, float(n - degree))
+    return SplineSpace(degree, np.concatenate([ends[0], inner, ends[1]]))
