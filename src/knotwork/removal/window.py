@@ -131,10 +131,10 @@ def fitted(u0, u1, low, high, band, turn, effort, final, data, links, room):
         home = place(room.at[j + u0], period)
         for c in range(d.shape[1]):
             z[j, c] = d[i, c] if room.held[j] else links.c[home, c]
-    best = measure(used, u0, u1, turn, data, links, room)
+    best = measure(used, False, u0, u1, turn, data, links, room)
     for step in range(effort.passes + 1):
         correct(used, u0, u1, band, turn, data, room)
-        worst = measure(used, u0, u1, turn, data, links, room)
+        worst = measure(used, False, u0, u1, turn, data, links, room)
         cost = worst if effort.share == 0 else total(used, effort.share, room)
         if step == 0 or cost < best:
             best = cost
@@ -149,6 +149,9 @@ def fitted(u0, u1, low, high, band, turn, effort, final, data, links, room):
     for j in range(u1 - u0):
         for c in range(d.shape[1]):
             z[j, c] = room.best[j, c]
+    if final:
+        room.worst[0] = measure(used, True, u0, u1, turn, data, links, room)
+        best = room.worst[0] if effort.share == 0 else total(used, effort.share, room)
     return best
 
 
@@ -185,11 +188,17 @@ def set_up(low, high, turn, effort, final, data, room):
 
 
 @kernel
-def measure(used, u0, u1, turn, data, links, room):
-    """Find what is left of each row, and the square of what it is off by, for the coefficients z; returns the most."""
+def measure(used, whole, u0, u1, turn, data, links, room):
+    """Find what is left of each row, and the square of what it is off by, for the coefficients z; returns the most.
+
+    Only rows that take part in the fit count, or the `whole`.
+    """
     z, v, d = room.z, room.point, data.d
     worst = room.s[0] - room.s[0]
     for r in range(used):
+        room.off[r] = worst - worst
+        if not whole and room.factor[r] == 0:
+            continue
         i, j0 = room.rows[r], room.base[r]
         for c in range(len(v)):
             v[c] = worst - worst
