@@ -84,7 +84,7 @@ def normals(surface: Spline, u: Any, v: Any, grid: bool = False) -> Array:
     --------
     >>> import knotwork as kw
     >>> cone = kw.surface([[[0, 0, 0], [0, 0, 0]], [[1, 0, 0], [0, 1, 0]]], degree=1)
-    >>> kw.normals(cone, [0.0, 0.5], 0.5).tolist()
+    >>> (kw.normals(cone, [0.0, 0.5], 0.5) + 0.0).tolist()
     [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]
     """
     _require_surface(surface)

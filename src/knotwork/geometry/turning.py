@@ -45,7 +45,7 @@ def extrema(curve: Spline, direction: Any) -> Zeros:
     --------
     >>> import knotwork as kw
     >>> top = kw.extrema(kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]]), [0, 1])
-    >>> top.low.tolist(), top.change.tolist()
+    >>> top.values.round(9).tolist(), top.change.tolist()
     ([0.5], [-1])
     >>> kw.extrema(kw.curve([[0, 0], [1, 2], [2, 0]], degree=1), [0, 1]).low.tolist()
     [0.5]
@@ -92,7 +92,7 @@ def inflections(curve: Spline) -> Zeros:
     --------
     >>> import knotwork as kw
     >>> s = kw.inflections(kw.curve([[0, 0], [1, 1], [2, -1], [3, 0]]))
-    >>> s.low.tolist(), s.change.tolist()
+    >>> s.values.round(9).tolist(), s.change.tolist()
     ([0.5], [1])
     """
     require_curve(curve)
