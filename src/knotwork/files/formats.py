@@ -61,6 +61,8 @@ FORMATS = (
     Format(
         "gpx", "GPX track", (".gpx",), "tracks and routes, in place", "curves of degree 1", ("extras",), shapes=True
     ),
+    Format("cad.sisl", "SISL and GoTools", (".g2",), "curves and surfaces", "the same, exactly"),
+    Format("cad.wavefront", "Wavefront free form", (".obj",), "curves and surfaces", "curves and surfaces"),
     Format("cad.iges", "IGES", (".igs", ".iges"), "curves and surfaces, B-splines in place", "curves and surfaces"),
     Format(
         "fonts",
