@@ -1,0 +1,90 @@
+"""What is read of the CAD files in some folders, what is left out, what is refused and why; and mutated copies of them.
+
+The files that the table was made for come in packages:
+
+    pip download --no-deps pyiges                          # impeller.igs
+    apt-get download occt-misc freecad-common              # STEP and IGES; dpkg-deb -x each
+    python benchmarks/cad.py FOLDER ...
+    python benchmarks/cad.py --mutate 10000 FOLDER ...     # a clear error or splines, every time
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import time
+import tracemalloc
+from collections import Counter
+from pathlib import Path
+
+from knotwork.errors import KnotworkError
+from knotwork.files.formats import SUFFIXES
+
+CAD = [suffix for suffix, each in SUFFIXES.items() if each.module.startswith("cad.")]
+
+
+def table(files: list[Path]) -> None:
+    """Print a line a format, and what was left out of how many files."""
+    rows: dict[str, Counter[str]] = {}
+    reasons: Counter[str] = Counter()
+    for path in files:
+        found = SUFFIXES[path.suffix.lower()]
+        row = rows.setdefault(found.name, Counter())
+        told: list[str] = []
+        data = path.read_bytes()
+        start = time.perf_counter()
+        try:
+            row["splines"] += len(found.codec.decode(data, told.append))
+            row["read"] += 1
+            row["in part"] += any("is left out:" in each for each in told)
+        except KnotworkError as exc:
+            row["refused"] += 1
+            told = [str(exc)]
+        row["ms"] += round((time.perf_counter() - start) * 1000)
+        row["kB"] += len(data) // 1000
+        reasons.update({re.sub(r"[#D]?\d+", "…", each) for each in told})
+    for name, row in rows.items():
+        rate = row["kB"] / max(row["ms"], 1)
+        print(f"{name:20} {row['read']:5} read ({row['in part']} in part), {row['refused']} refused, ", end="")
+        print(f"{row['splines']:,} splines, {row['kB'] / 1000:.1f} MB at {rate:.2f} MB/s")
+    for reason, count in reasons.most_common(25):
+        print(f"{count:6} files: {reason[:140]}")
+
+
+def mutate(files: list[Path], count: int) -> None:
+    """Read damaged copies; any error but a clear one stops here."""
+    random.seed(1)
+    files = [path for path in files if path.stat().st_size < 200_000]
+    ends: Counter[str] = Counter()
+    slowest, largest = 0.0, 0.0
+    for _ in range(count):
+        path = random.choice(files)
+        data = bytearray(path.read_bytes())
+        size = len(data)
+        for _ in range(random.randint(1, 8)):
+            i, n = random.randrange(len(data)), random.choice((0, 1, 1, 2, 10, 1000))
+            data[i : i + n] = random.choice((b"", random.randbytes(random.randint(1, 4)), bytes(data[i : i + n]) * 2))
+        tracemalloc.start()
+        start = time.perf_counter()
+        try:
+            SUFFIXES[path.suffix.lower()].codec.decode(bytes(data), lambda _: None)
+            ends["read"] += 1
+        except KnotworkError:
+            ends["refused"] += 1
+        slowest = max(slowest, time.perf_counter() - start)
+        largest = max(largest, tracemalloc.get_traced_memory()[1] / size)
+        tracemalloc.stop()
+    print(f"{dict(ends)}; the slowest took {slowest:.1f} s, the largest {largest:.0f} bytes a byte of its file")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("--mutate", type=int)
+    given = parser.parse_args()
+    paths = sorted(p for folder in given.folders for p in folder.rglob("*") if p.suffix.lower() in CAD and p.is_file())
+    if given.mutate:
+        mutate(paths, given.mutate)
+    else:
+        table(paths)
