@@ -262,8 +262,6 @@ class Geometry:
             return analytic.cone(frame, numbers[0], 0.0, turn, z)
         if kind == "CONICAL_SURFACE":
             angle = numbers[1] * self.radians
-            apex = -numbers[0] / math.tan(angle)
-            z = [max(apex, z[0]), z[1]] if angle > 0 else [z[0], min(apex, z[1])]
             return analytic.cone(frame, numbers[0], angle, turn, z)
         if kind == "SPHERICAL_SURFACE":
             return analytic.torus(frame, 0.0, numbers[0], turn, (-math.pi / 2, math.pi / 2))
