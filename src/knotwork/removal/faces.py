@@ -164,12 +164,8 @@ def reduce(
     if distance == "geometric":
         from knotwork.removal.shapes.reducing import reduce_shape
 
-        def parametric(curve: Spline, allowed: Any) -> Reduction:
-            return reduce(curve, allowed, effort=effort, progress=progress)
-
         return reduce_shape(
-            spline, tolerance, form=form, effort=effort, keep=keep, crossings=crossings, small=small,
-            parametric=parametric,
+            spline, tolerance, form=form, effort=effort, keep=keep, crossings=crossings, small=small
         )  # fmt: skip
     if form != "spline":
         raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")

@@ -11,7 +11,7 @@ from knotwork.arithmetic.arrays import Array, exact, real_numbers
 from knotwork.errors import ParameterError, PointError
 from knotwork.removal.shapes.alignment import aligned, coarse_square, points_at, samples
 from knotwork.removal.shapes.certificate import Scaled, exact_square, root_above
-from knotwork.removal.shapes.nets import checked, exact_nets, is_closed, nets
+from knotwork.removal.shapes.nets import checked, closes, exact_nets, nets
 from knotwork.spline import Spline
 from knotwork.value import Frozen
 
@@ -103,7 +103,7 @@ class Matching(Frozen):
         """
         rational = _compared(a, b)
         f, g = (exact_nets(c, rational) for c in (a, b)) if exact else (nets(c, rational)[0] for c in (a, b))
-        self._require(f, g, rational)
+        self._require((a, b), (f, g), rational)
         if exact:
             u, s = (_fractions(x) for x in (self.second, self.first))
             square, widest = exact_square(f, g, u, s, rational=rational)
@@ -118,11 +118,11 @@ class Matching(Frozen):
             raise ParameterError("a step of the matching leaves a piece of a curve: expected every joint on the path")
         return bound
 
-    def _require(self, f: Array, g: Array, rational: bool) -> None:
+    def _require(self, curves: tuple[Spline, Spline], both: tuple[Array, Array], rational: bool) -> None:
         """Raise unless the path runs through both curves from end to end."""
-        for name, x, c in (("first", self.first, f), ("second", self.second, g)):
+        for name, x, curve, c in zip(("first", "second"), (self.first, self.second), curves, both, strict=True):
             start, end = x[0], x[-1]
-            if self.closed and not is_closed(c, rational):
+            if self.closed and not closes(curve, c, rational):
                 raise ParameterError(f"{name}: the curve is not closed, the matching is one of closed curves")
             good = 0 <= start < len(c) and end == start + len(c) and end - len(c) == start
             if not good or (start != 0 and not self.closed):
@@ -190,7 +190,7 @@ def distance_bound(a: Spline, b: Spline, tolerance: Any = None) -> Distance:
     rational = _compared(a, b)
     scaled = _scaled(a, b, _tolerance(tolerance, checked(a)), rational)
     f, g = scaled.pair.f, scaled.pair.g
-    closed = is_closed(f, rational) and is_closed(g, rational)
+    closed = closes(a, f, rational) and closes(b, g, rational)
     flat = np.full(scaled.dim, 2.0**-12)
     s, u = samples(_points(f, rational), flat), samples(_points(g, rational), flat)
     P, Q = _at(scaled, f, s), _at(scaled, g, u)

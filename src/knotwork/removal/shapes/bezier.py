@@ -50,6 +50,37 @@ class Pieces(NamedTuple):
     start: Array
 
 
+class Curves(NamedTuple):
+    """Curves ready to be searched."""
+
+    #: nets divided by 2 to the power of `exponent`; those of a closed curve begin with piece `start` of the given ones
+    nets: Array
+    at: Array
+    #: whether the joint before each piece, and the end of each curve, stays
+    hard: Array
+    start: Array
+    #: the tolerance in each component; what squares of components count; the largest distance by that metric
+    unit: Array
+    metric: Array
+    reach: float
+    exponent: int
+    rational: bool
+    #: whether the tolerance is one a component
+    each: bool
+    #: whether there is anything to search: not below the finest tolerance
+    possible: bool
+
+    def target(self) -> Array:
+        """Return the square of the largest distance that may be found for each curve, rounding left out."""
+        F, d, q = self.nets, len(self.unit), self.nets.shape[1] - 1
+        # how large g is, is not known yet: mostly no larger than f and some tolerances
+        largest = _sizes(F, self.at, self.rational)
+        allowance = _allowance(self.metric, 2 * largest + 4 * self.unit, q, self.rational)
+        left = np.maximum(self.reach / _outward(d) - allowance, 0)
+        result: Array = left * left / _outward(d)
+        return result
+
+
 def reduce_bezier(
     nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, lines: bool = False,
     keep: Any = (), effort: str = "normal", crossings: str = "none-new", rational: bool = False,
@@ -97,15 +128,45 @@ def reduce_bezier(
     -----
     Bounded: see `Search.curve`. Scaling by powers of two and moving the origin exactly change nothing else.
     """
-    nets, at = np.ascontiguousarray(nets, np.float64), np.ascontiguousarray(at, np.int64)
-    d = nets.shape[2] - rational
-    each = np.ndim(tolerance) == 1
-    unit = np.broadcast_to(np.asarray(tolerance, np.float64), (d,))
+    given = prepared(nets, at, tolerance, closed, angle, lines, keep, rational)
+    how = efforts(effort, crossings)
+    nets, at = given.nets, given.at
+    if not given.possible:
+        return _nothing(nets, len(at) - 1)
+    found = searched(given, how)
+    G, where = _joined([c.G for c in found])
+    u, path = _joined([c.u for c in found])
+    s, _ = _joined([c.s for c in found])
+    square = np.array([c.square for c in found])
+    F, metric, each = given.nets, given.metric, given.each
+    sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
+    bound = (np.sqrt(square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(len(metric))
+    if not each:
+        bound = np.ldexp(bound, given.exponent)
+    some = where[1:] > where[:-1]
+    bad = some & ~(bound <= (1.0 if each else tolerance))
+    bound[~some] = 0
+    result = Pieces(_unscaled(G, given.exponent, rational), where, u, s, path, bound, given.start)
+    return _without(result, bad) if bad.any() else result
+
+
+def efforts(effort: str, crossings: str) -> tuple[Effort, ...]:
+    """Return the ways to search, or raise if an option is not known."""
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
     if crossings not in ("none-new", "allow"):
         raise ParameterError(f"crossings {crossings!r} given; expected 'none-new' or 'allow'")
-    how = tuple(e._replace(simple=crossings == "none-new") for e in EFFORTS[effort])
+    return tuple(e._replace(simple=crossings == "none-new") for e in EFFORTS[effort])
+
+
+def prepared(
+    nets: Array, at: Any, tolerance: Any, closed: Any, angle: float | None, lines: bool, keep: Any, rational: bool
+) -> Curves:
+    """Check the input of `reduce_bezier`, scale it by a power of two, open what is closed, and mark what stays."""
+    nets, at = np.ascontiguousarray(nets, np.float64), np.ascontiguousarray(at, np.int64)
+    d = nets.shape[2] - rational
+    each = np.ndim(tolerance) == 1
+    unit = np.broadcast_to(np.asarray(tolerance, np.float64), (d,))
     if not np.isfinite(unit).all() or (unit < 0).any():
         raise ParameterError(f"tolerance {tolerance} given; expected finite numbers from 0 on")
     if not np.isfinite(nets).all():
@@ -118,34 +179,21 @@ def reduce_bezier(
     exponent = int(np.frexp(size)[1])
     F = _scaled(nets, exponent, rational)
     unit = np.ldexp(unit, -exponent)
-    if not (unit >= FINEST).all() or not len(nets):
-        return _nothing(nets, count)
-    unit = np.minimum(unit, 2.0**40)
-    per = 1 / unit
-    F, start = _opened(F, at, per, closed, d)
-    hard = np.zeros(len(F) + count, np.int8)
-    a, b = np.zeros(d), np.zeros(d)
-    if angle is not None:
-        corners.corners(F, at, per, math.cos(math.radians(angle)), hard, a, b)
-    if lines:
-        corners.lines(F, at, per, hard, a, b)
-    if len(keep):
-        _keep(hard, np.asarray(keep, np.int64), at, start, closed)
-    metric, reach = (1 / unit**2, 1.0) if each else (np.ones(d), float(unit[0]))
-    found = _search(F, at, hard, unit, metric, reach, rational, how)
-    G, where = _joined([c.G for c in found])
-    u, path = _joined([c.u for c in found])
-    s, _ = _joined([c.s for c in found])
-    square = np.array([c.square for c in found])
-    sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
-    bound = (np.sqrt(square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(d)
-    if not each:
-        bound = np.ldexp(bound, exponent)
-    some = where[1:] > where[:-1]
-    bad = some & ~(bound <= (1.0 if each else tolerance))
-    bound[~some] = 0
-    result = Pieces(_unscaled(G, exponent, rational), where, u, s, path, bound, start)
-    return _without(result, bad) if bad.any() else result
+    hard, start = np.zeros(len(F) + count, np.int8), np.zeros(count, np.int64)
+    possible = bool((unit >= FINEST).all()) and len(nets) > 0
+    if possible:
+        unit = np.minimum(unit, 2.0**40)
+        per = 1 / unit
+        F, start = _opened(F, at, per, closed, d)
+        a, b = np.zeros(d), np.zeros(d)
+        if angle is not None:
+            corners.corners(F, at, per, math.cos(math.radians(angle)), hard, a, b)
+        if lines:
+            corners.lines(F, at, per, hard, a, b)
+        if len(keep):
+            _keep(hard, np.asarray(keep, np.int64), at, start, closed)
+    metric, reach = (1 / unit**2 if possible else unit, 1.0) if each else (np.ones(d), float(unit[0]))
+    return Curves(F, at, hard, start, unit, metric, reach, exponent, rational, each, possible)
 
 
 def _joined(parts: list[Array]) -> tuple[Array, Array]:
@@ -202,25 +250,14 @@ def _keep(hard: Array, keep: Array, at: Array, start: Array, closed: Array) -> N
     hard[at[own] + own + place] = 1
 
 
-def _search(
-    F: Array,
-    at: Array,
-    hard: Array,
-    unit: Array,
-    metric: Array,
-    reach: float,
-    rational: bool,
-    efforts: tuple[Effort, ...],
-) -> list[Found]:
+def searched(given: Curves, efforts: tuple[Effort, ...]) -> list[Found]:
     """Search for pieces near each curve; none where there are none."""
+    F, at, hard, unit, rational = given.nets, given.at, given.hard, given.unit, given.rational
     q, d, sizes = F.shape[1] - 1, len(unit), np.diff(at)
     allowed = ALLOWED * (sizes + 4) if rational or q > 3 else np.maximum(sizes - 1, 0)
-    # how large g is, is not known yet: mostly no larger than f and some tolerances
-    largest = _sizes(F, at, rational)
-    left = np.maximum(reach / _outward(d) - _allowance(metric, 2 * largest + 4 * unit, q, rational), 0)
-    target = left * left / _outward(d)
+    target = given.target()
     most = counted(F, at, 1 / unit, extent(d))
-    search = Search(most + most // 2 + 64, int(allowed.max(initial=0)), unit, metric, q, rational)
+    search = Search(most + most // 2 + 64, int(allowed.max(initial=0)), unit, given.metric, q, rational)
     none = Found(np.zeros((0, 4, F.shape[2])), np.zeros(0), np.zeros(0), 0.0)
     result = []
     for i, (lo, hi) in enumerate(itertools.pairwise(at.tolist())):

@@ -6,7 +6,7 @@ from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.crossings import tangled
 from knotwork.removal.shapes.piece import by_length, fitted_piece
 from knotwork.removal.shapes.residuals import FAIR
-from knotwork.removal.shapes.window import TARGET, copied, descended, fitted_window
+from knotwork.removal.shapes.window import TARGET, descended, fitted_window, kept, restored
 
 #: a piece that fails by more than this is not helped by its neighbours
 HELPED = 3.0
@@ -16,22 +16,6 @@ STIFF = 100
 REFUSED = 1.5
 #: samples tried for the very first piece
 FIRST = 16
-
-
-@kernel(inline=False)
-def kept(G, S, k0, k1, ja, jb, room, slot):
-    """Keep pieces k0 … k1 and the parameters of samples ja … jb in a slot of the working space."""
-    copied(G, room.pieces[slot], k0, k1 - k0 + 1, 0, room.D)
-    for j in range(ja, jb + 1):
-        room.u[slot, j - ja] = S.u[j]
-
-
-@kernel(inline=False)
-def restored(G, S, k0, k1, ja, jb, room, slot):
-    """Bring back what was kept."""
-    copied(room.pieces[slot], G, 0, k1 - k0 + 1, k0, room.D)
-    for j in range(ja, jb + 1):
-        S.u[j] = room.u[slot, j - ja]
 
 
 @kernel(inline=False)

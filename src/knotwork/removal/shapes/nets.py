@@ -50,6 +50,12 @@ def checked(spline: Spline) -> Spline:
     return Spline.trusted(spline.spaces, np.ascontiguousarray(c), spline.rational)
 
 
+def closes(curve: Spline, nets: Array, rational: bool) -> bool:
+    """Tell whether a curve goes on around a period, which float nets show but for rounding, or ends where it starts."""
+    space = curve.space
+    return bool(space.periodic and space.multiplicity(space.domain[0]) <= space.degree) or is_closed(nets, rational)
+
+
 def is_closed(nets: Array, rational: bool) -> bool:
     """Tell whether a curve ends in the point where it starts, bit for bit."""
     first, last = nets[0, 0], nets[-1, -1]

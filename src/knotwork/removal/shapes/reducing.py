@@ -2,32 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_floats
-from knotwork.conversion import elevate
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import joined
 from knotwork.geometry.lengths import increasing
 from knotwork.removal.result import Reduction
 from knotwork.removal.shapes.between import Matching
 from knotwork.removal.shapes.bezier import reduce_bezier
+from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
 from knotwork.removal.shapes.polyline import reduce_polyline
+from knotwork.removal.shapes.smooth import Smooth, reduce_smooth
 from knotwork.removal.tolerance import Tolerance
+from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 #: a joint of a curve is a corner where its tangent turns by more than this, in degrees
 CORNER = 10.0
-#: the least step of a pace, per mean step: knots that nearly coincide are of no use
-EVEN = 1e-3
 FEATURES = ("corners", "lines")
-
-ParametricReduction = Callable[[Spline, Any], Reduction]
 
 
 def reduce_shape(
@@ -39,7 +37,6 @@ def reduce_shape(
     keep: Any,
     crossings: str,
     small: str,
-    parametric: ParametricReduction,
 ) -> Reduction:
     """Return a curve with few pieces, the shape of which is within a distance of the given one.
 
@@ -58,8 +55,6 @@ def reduce_shape(
         Whether cubic pieces may cross where the curve does not.
     small : {"keep", "drop"}
         What becomes of closed polylines within the tolerance of a point.
-    parametric : callable
-        The reduction at equal parameters, for the last step to a smooth spline.
     """
     curve = checked(spline)
     given = Tolerance(curve, tolerance).given
@@ -69,10 +64,8 @@ def reduce_shape(
     closed = curve.space.periodic or (is_closed(pieces, rational) and len(pieces) > 2)
     if form == "polyline":
         return _polyline(curve, pieces, allowed, closed, effort, keep, small)
-    found = _bezier(curve, pieces, allowed, closed, effort, keep, crossings)
-    if form == "bezier":
-        return found
-    return _smooth(curve, pieces, allowed, closed, found, effort, parametric)
+    search = _bezier if form == "bezier" else _smooth
+    return search(curve, pieces, allowed, closed, effort, keep, crossings)
 
 
 def _bezier(
@@ -130,70 +123,44 @@ def _polyline(
 
 
 def _smooth(
-    curve: Spline,
-    pieces: Array,
-    allowed: Any,
-    closed: bool,
-    found: Reduction,
-    effort: str,
-    parametric: ParametricReduction,
+    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, crossings: str
 ) -> Reduction:
-    """Return a spline with simple knots: the curve at the pace of its cubic pieces, reduced at equal parameters.
-
-    The matching says how fast the cubics run along the curve. The curve at that pace is the same shape, and a spline
-    within the tolerance of it at equal parameters is within the tolerance of the shape.
-    """
-    if curve.rational:
-        raise ParameterError("form 'spline' takes polynomial curves; rational ones become form='bezier'")
-    paced, places = _at_even_pace(curve, pieces, closed, found)
-    reduced = parametric(elevate(paced, 3 - paced.space.degree) if paced.space.degree < 3 else paced, allowed)
-    count = len(reduced.spline.space.breaks) - 1
-    # step i of the pace is [t_i, t_i+1] on the new curve, and [s_i, s_i+1] on the old one
-    t = paced.space.breaks
-    new = reduced.spline.space.breaks
-    second = np.interp(t, new, np.arange(count + 1.0))
-    matching = Matching(places, second, closed)
-    low = _lower_bound(pieces, allowed, closed, False, 3) + (0 if closed else 3)
-    return Reduction(reduced.spline, reduced.bound, "geometric", (), low, None, matching, effort)
-
-
-def _at_even_pace(curve: Spline, pieces: Array, closed: bool, found: Reduction) -> tuple[Spline, Array]:
-    """Return the same shape at another pace, with the places of its breaks on the given curve.
-
-    A polyline runs as its cubics do, by length; between smooth pieces, lengths of its own will do.
-    """
-    matching = found.matching
+    """Return a cubic spline with simple knots, but for corners."""
+    rational, periodic = curve.rational, closed and curve.space.periodic
+    angle, lines, joints = _features(curve, pieces, keep)
+    each = np.ndim(allowed) == 1
+    low = _lower_bound(pieces, allowed, closed, rational, 3) + (0 if closed else 3)
+    found = reduce_smooth(
+        pieces, allowed, closed=closed, periodic=periodic, angle=angle, lines=lines, keep=joints, effort=effort,
+        crossings=crossings, rational=rational,
+    )  # fmt: skip
+    if found is None or len(found.points) >= curve.space.dimension:
+        return _itself(curve, effort, low, each)
     a, b = in_floats(np.array(curve.space.domain), "domain", ParameterError).tolist()
-    periodic = closed and curve.space.periodic
-    if pieces.shape[1] == 2 and isinstance(matching, Matching) and len(matching.first) > 2:
-        places, there = matching.first, matching.second
-        ahead = np.append(True, (np.diff(places) > 0) | (np.diff(there) > 0))
-        places, there = places[ahead], there[ahead]
-        k = np.minimum(np.ceil(places).astype(int) - 1, places.max().astype(int)).clip(0)
-        share = (places - k)[:, None]
-        nets_at = pieces[k % len(pieces)]
-        points = (1 - share) * nets_at[:, 0] + share * nets_at[:, 1]
-        length = _lengths_along(found.spline, there)
-        least = (length[-1] - length[0]) * EVEN / len(length)
-        t = increasing(np.maximum(np.diff(length), least), periodic)
-        if closed:
-            points[-1] = points[0]
-        t = a + t * ((b - a) / t[-1])
-        return joined(np.stack([points[:-1], points[1:]], axis=1), t, periodic), places
-    going = (pieces[:, 1:] != pieces[:, :1]).any(axis=(1, 2))
-    t = breaks_by_length(pieces[going], (a, b), periodic)
-    return joined(pieces[going], t, periodic), np.append(np.flatnonzero(going).astype(float), float(len(pieces)))
+    t = increasing(found.lengths, periodic)
+    t = a + t * ((b - a) / t[-1])
+    if periodic:
+        space = SplineSpace(3, np.append(np.repeat(t[:-1], found.times[:-1]), t[-1]), periodic=True)
+    else:
+        space = SplineSpace(3, np.concatenate([t[:1], np.repeat(t, found.times), t[-1:]]))
+    spline = Spline(space, found.points)
+    (f, there), (g, here) = (nets(c, rational) for c in (curve, spline))
+    scaled = Scaled(f, g, allowed, rational=rational, given=there + here)
+    u, s, _ = scaled.refined(*_around(found, len(f), len(g)))
+    bound = scaled.bound(u, s)
+    if not np.all(bound <= allowed):  # only rounding can make it so
+        return _itself(curve, effort, low, each)
+    return Reduction(spline, bound, "geometric", (), low, None, Matching(s, u, closed), effort)
 
 
-def _lengths_along(spline: Spline, places: Array) -> Array:
-    """Return the lengths of a curve from its start to places, piece plus part of it: near enough for a pace."""
-    breaks = spline.space.breaks
-    steps = np.linspace(0, 1, 17)
-    u = np.unique((breaks[:-1, None] + steps * np.diff(breaks)[:, None]).ravel())
-    along = np.append(0.0, np.cumsum(np.sqrt((np.diff(spline(u), axis=0) ** 2).sum(axis=1))))
-    at = np.interp(places, np.arange(len(breaks)), breaks)
-    lengths: Array = np.interp(at, u, along)
-    return lengths
+def _around(found: Smooth, pieces: int, new: int) -> tuple[Array, Array]:
+    """Return the path over all of both curves, its start such that one turn later is a float too."""
+    u, s = found.u.copy(), found.s + found.start
+    start = (u[0] + new) - new
+    u = np.clip(u, start, start + new)
+    u[0], u[-1] = start, start + new
+    s[-1] = s[0] + pieces
+    return u, s
 
 
 def _features(curve: Spline, pieces: Array, keep: Any) -> tuple[float | None, bool, Array]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.crossings import tangled
-from knotwork.removal.shapes.greedy import kept, restored
 from knotwork.removal.shapes.piece import least_squares
 from knotwork.removal.shapes.repair import chain
 from knotwork.removal.shapes.residuals import FAIR, measured, rematched
-from knotwork.removal.shapes.window import HOPELESS, TARGET, copied, fitted_window
+from knotwork.removal.shapes.window import HOPELESS, TARGET, copied, fitted_window, kept, restored
 
 #: pieces on each side of a joint that are fitted together when it goes
 REACH = 3

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.greedy import kept, restored
 from knotwork.removal.shapes.piece import by_length, fitted_piece
 from knotwork.removal.shapes.residuals import FAIR
 from knotwork.removal.shapes.samples import point
-from knotwork.removal.shapes.window import TARGET, fitted_window
+from knotwork.removal.shapes.window import TARGET, fitted_window, kept, restored
 
 #: neighbours on each side that are fitted again together with a piece
 REACH = 2

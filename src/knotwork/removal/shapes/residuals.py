@@ -31,13 +31,21 @@ def row(G, k, at, room, state, half):
     """Add the distance room.d, at Bernstein values room.B of piece k, to the equations; return e² and its part of Φ.
 
     Φ = Σ e^P, P = 2 half, is a sum of squares ρ = e^half. With d = e n the Gauss-Newton row is half e^(half-1) nᵀB:
-    no root and no quotient is left in the equations.
+    no root and no quotient is left in the equations. P = 2 is plain least squares, of points at fixed parameters.
     """
     d, B, D, A, b = room.d, room.B, room.D, room.A, room.b
     q = 0.0
     for c in range(len(D)):
         q += d[c] * d[c]
     q2 = q * q
+    if half == 1:
+        for i in range(4):
+            for l in range(i + 1):
+                for c in range(len(D)):
+                    A[state, (at + i) * len(D) + c, (i - l) * len(D)] += B[i] * B[l]
+            for c in range(len(D)):
+                b[state, (at + i) * len(D) + c] += B[i] * d[c]
+        return q, q
     if half == 4:
         h, slope, phi, slight = 16 * q2, 4 * q2 * q, q2 * q2, q < SLIGHT
     else:

@@ -32,10 +32,30 @@ class Samples(NamedTuple):
     fine: Array
 
 
+class Frame(NamedTuple):
+    """A smooth curve behind the pieces, which its control points determine; of no size where pieces are free."""
+
+    #: length of each piece; how often the knot before it counts, whether that stays, whether it was tried in vain
+    h: Array
+    times: Array
+    fixed: Array
+    tried: Array
+    #: first control point of each piece, and its nets: G[k, i] = Σ E[k, i, l] C[at[k] + l]
+    at: Array
+    E: Array
+    C: Array
+    #: what to go back to; knots near a piece; the row of a blossom
+    old: Array
+    lengths: Array
+    counts: Array
+    t: Array
+    row: Array
+
+
 class Room(NamedTuple):
     """Working space of the search, used over and over."""
 
-    #: the normal equations of two states, lower band, and their right-hand sides
+    #: the normal equations of two states, lower band, and their right-hand sides; a third one of a frame's pieces
     A: Array
     b: Array
     #: Cholesky factor and solution
@@ -60,6 +80,7 @@ class Room(NamedTuple):
     level: Array
     #: a polyline
     chords: Array
+    frame: Frame
     #: a tuple as long as a point
     D: Any
 
@@ -70,12 +91,23 @@ def samples(count: int, d: int) -> Samples:
     return Samples(np.zeros(count), np.zeros((count, d)), np.zeros((count, d)), *flat)
 
 
-def room(count: int, d: int, degree: int = 3) -> Room:
-    """Return working space for windows of up to `count` samples in d dimensions."""
-    unknowns, band = (3 * WINDOW + 1) * d, 4 * d
+def frame(pieces: int, d: int) -> Frame:
+    """Return space for a smooth curve of up to so many pieces and control points."""
+    flags = (np.zeros(pieces, np.int8), np.zeros(pieces, np.int8))
+    return Frame(
+        np.zeros(pieces), np.zeros(pieces, np.int64), *flags, np.zeros(pieces, np.int64), np.zeros((pieces, 4, 4)),
+        np.zeros((pieces, d)), np.zeros((3, pieces, d)), np.zeros(pieces), np.zeros(pieces, np.int64), np.zeros(6),
+        np.zeros(4),
+    )  # fmt: skip
+
+
+def room(count: int, d: int, degree: int = 3, pieces: int = 0) -> Room:
+    """Return working space for windows of up to `count` samples in d dimensions; or frames of up to `pieces`."""
+    window = max(pieces, WINDOW)
+    unknowns, band = (3 * window + 1) * d, 4 * d
     return Room(
-        np.zeros((2, unknowns, band)), np.zeros((2, unknowns)), np.zeros((unknowns, band)), np.zeros(unknowns),
-        np.zeros((3, WINDOW, 4, d)), np.zeros((3, count)), np.zeros(count), np.zeros(count, np.int64),
-        np.zeros(WINDOW + 1), np.zeros(d), np.zeros((4, d)), np.zeros(4), np.zeros((3, 3)), np.zeros((3, d)),
-        np.zeros((degree + 1, d + 1)), np.zeros((512, d)), extent(d),
+        np.zeros((3, unknowns, band)), np.zeros((3, unknowns)), np.zeros((unknowns, band)), np.zeros(unknowns),
+        np.zeros((3, window, 4, d)), np.zeros((3, count)), np.zeros(count), np.zeros(count, np.int64),
+        np.zeros(window + 1), np.zeros(d), np.zeros((4, d)), np.zeros(4), np.zeros((3, 3)), np.zeros((3, d)),
+        np.zeros((degree + 1, d + 1)), np.zeros((512, d)), frame(pieces, d), extent(d),
     )  # fmt: skip

@@ -53,12 +53,18 @@ class Found(NamedTuple):
 class Search:
     """Working space for curves of one kind, of up to so many fine samples and pieces; and what they have in common."""
 
-    def __init__(self, count: int, pieces: int, unit: Array, metric: Array, q: int, rational: bool) -> None:
+    def __init__(
+        self, count: int, pieces: int, unit: Array, metric: Array, q: int, rational: bool, smooth: bool = False
+    ) -> None:
         d = len(unit)
         self.unit, self.per, self.metric = unit, 1 / unit, metric
         self.product = certificate.products(3, q) if rational else np.zeros((0, 0))
         self.loops = certificate.loop(d), certificate.loop(d + rational)
-        self.fine, self.samples, self.room = samples(count, d), samples(count, d), room(count, d, q)
+        self.fine, self.samples, self.room = (
+            samples(count, d),
+            samples(count, d),
+            room(count, d, q, pieces + 8 if smooth else 0),
+        )
         self.matching = certificate.room_for(q, 3, d + rational)
         self.G, self.out = np.zeros((pieces + 2, 4, d)), np.zeros((pieces + 2, 4, d + rational))
         self.u, self.s = np.zeros(0), np.zeros(0)
@@ -129,10 +135,14 @@ class Search:
                 return None, 0
             last = int(merged(self.fine, end, F.shape[1] == 2, S, room))
             interpolated(S, last, s, u)
-            count = int(repaired(G, S, last, count, most, where, room, effort.steps))
+            count = self._repaired(last, count, most, where, effort)
             if count > most:
                 return None, end
         return None, end
+
+    def _repaired(self, last: int, count: int, most: int, where: Array, effort: Effort) -> int:
+        """Mend the pieces at some places; return how many there are."""
+        return int(repaired(self.G, self.samples, last, count, most, where, self.room, effort.steps))
 
     def _refined(self, pair: Pair, target: float, u: Array, s: Array) -> int:
         """Write a finer path to self.u and self.s, and where it fails to self.failing; return how many nodes it has."""

@@ -28,6 +28,28 @@ def copied(source, target, first, count, at, D):
 
 
 @kernel(inline=False)
+def kept(G, S, k0, k1, ja, jb, room, slot):
+    """Keep pieces k0 … k1 and the parameters of samples ja … jb in a slot of the working space."""
+    copied(G, room.pieces[slot], k0, k1 - k0 + 1, 0, room.D)
+    for j in range(ja, jb + 1):
+        room.u[slot, j - ja] = S.u[j]
+
+
+@kernel(inline=False)
+def restored(G, S, k0, k1, ja, jb, room, slot):
+    """Bring back what was kept."""
+    copied(room.pieces[slot], G, 0, k1 - k0 + 1, k0, room.D)
+    for j in range(ja, jb + 1):
+        S.u[j] = room.u[slot, j - ja]
+
+
+@kernel
+def free(k0, k1, room, tied):
+    """Return which unknowns of a window are free: all but the start, and the end if `tied`."""
+    return len(room.D), (3 * (k1 - k0) + 4 - tied) * len(room.D)
+
+
+@kernel(inline=False)
 def solved(room, state, lo, hi, damping, D):
     """Solve (A + damping) x = b for unknowns lo … hi-1 by Cholesky in the band; tell whether it was definite."""
     A, L, x, band = room.A, room.L, room.x, 4 * len(D)
@@ -75,8 +97,8 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair, target):
 
     Done when that is within the target. The start is fixed, and the end if `tied`.
     """
-    D, u = room.D, S.u
-    lo, hi = len(D), (3 * (k1 - k0) + 4 - tied) * len(D)
+    D = room.D
+    lo, hi = free(k0, k1, room, tied)
     state = 0
     phi, worst = measured(G, k0, k1, S, ja, jb, room, state, half, math.inf, fair)
     damping, before = 1e-3, worst
@@ -90,9 +112,7 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair, target):
         if not solved(room, state, lo, hi, damping, D):
             damping *= 6
             continue
-        copied(G, room.pieces[0], k0, k1 - k0 + 1, 0, D)
-        for j in range(ja, jb + 1):
-            room.u[0, j - ja] = u[j]
+        kept(G, S, k0, k1, ja, jb, room, 0)
         moved(G, k0, k1, room, lo, hi, D)
         rematched(G, k0, k1, S, ja, jb, room)
         new, most = measured(G, k0, k1, S, ja, jb, room, 1 - state, half, phi, fair)
@@ -101,9 +121,7 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair, target):
             damping /= 5
         else:
             damping *= 6
-            copied(room.pieces[0], G, 0, k1 - k0 + 1, k0, D)
-            for j in range(ja, jb + 1):
-                u[j] = room.u[0, j - ja]
+            restored(G, S, k0, k1, ja, jb, room, 0)
     return worst
 
 

@@ -1,0 +1,221 @@
+"""Knots taken out of a smooth curve or put into it, each with a fit of the control points around."""
+
+from __future__ import annotations
+
+import math
+
+from knotwork.arithmetic.kernel import kernel
+from knotwork.removal.shapes.crossings import tangled
+from knotwork.removal.shapes.frame import (
+    DEGREE,
+    descended_frame,
+    fitted_frame,
+    framed,
+    kept_frame,
+    knots_near,
+    netted,
+    restored_frame,
+)
+from knotwork.removal.shapes.residuals import FAIR, measured
+from knotwork.removal.shapes.window import HOPELESS, TARGET, copied
+
+#: sweeps of least squares before the p-norm
+SWEEPS = 2
+
+
+@kernel(inline=False)
+def window_around(frame, i, j, reach, count):
+    """Return the first and the last piece up to `reach` away from pieces i … j, as far as the curve is smooth."""
+    k0, k1, around = i, j, 1 if frame.times[0] < DEGREE else 0
+    while k0 > max(i - reach, around) and frame.times[k0] < DEGREE:
+        k0 -= 1
+    while k1 < min(j + reach, count - 1 - around) and frame.times[k1 + 1] < DEGREE:
+        k1 += 1
+    return k0, k1
+
+
+@kernel(inline=False)
+def samples_around(u, last, j, k0, k1):
+    """Return the last sample no later than joint k0, and the first no earlier than joint k1 + 1, looking from j."""
+    a = j
+    while a > 0 and u[a] > k0:
+        a -= 1
+    while a < last and u[a + 1] <= k0:
+        a += 1
+    b = a
+    while b < last and u[b] < k1 + 1:
+        b += 1
+    return a, b
+
+
+@kernel(inline=False)
+def loosened(S, k, k0, k1, ja, jb, count, room):
+    """Take away one copy of the knot before piece k in a window; return 1 if two pieces became one, else 0.
+
+    What is behind the window stays where it is. Some control point near the knot goes.
+    """
+    frame, u, D = room.frame, S.u, room.D
+    h, times, at, C = frame.h, frame.times, frame.at, frame.C
+    middle = at[k] + (DEGREE - times[k]) // 2
+    for i in range(middle, at[k1] + DEGREE):
+        for c in range(len(D)):
+            C[i, c] = C[i + 1, c]
+    if times[k] > 1:
+        times[k] -= 1
+        framed(frame, k0, k1, count)
+        return 0
+    share = h[k - 1] / (h[k - 1] + h[k])
+    for j in range(ja + 1, jb + 1):
+        if u[j] >= k + 1:
+            u[j] -= 1
+        elif u[j] > k:
+            u[j] = k - 1 + share + (1 - share) * (u[j] - k)
+        elif u[j] > k - 1:
+            u[j] = k - 1 + share * (u[j] - (k - 1))
+    h[k - 1] += h[k]
+    top = count if times[0] < DEGREE else min(count, k1 + 1 + DEGREE)
+    for i in range(k, top):
+        h[i] = h[i + 1]
+        times[i] = times[i + 1]
+    framed(frame, k0, k1 - 1, count - 1)
+    return 1
+
+
+@kernel(inline=False)
+def closed_up(G, S, last, k, k1, jb, count, merged, room):
+    """Move what is behind a window to where it belongs, one control point and so many pieces having gone."""
+    frame, D = room.frame, room.D
+    for i in range(frame.at[k1 - merged] + DEGREE + 1, frame.at[count - 1] + DEGREE):
+        for c in range(len(D)):
+            frame.C[i, c] = frame.C[i + 1, c]
+    if merged == 0:
+        for i in range(k1 + 1, count):
+            frame.at[i] -= 1
+        return
+    copied(G, G, k1 + 1, count - k1 - 1, k1, D)
+    for i in range(k, count):
+        frame.fixed[i], frame.tried[i] = frame.fixed[i + 1], frame.tried[i + 1]
+    if frame.times[0] == DEGREE:
+        for i in range(min(count, k1 + 1 + DEGREE), count):
+            frame.h[i], frame.times[i] = frame.h[i + 1], frame.times[i + 1]
+    for i in range(k1, count - 1):
+        frame.at[i] = frame.at[i + 1] - 1
+        for r in range(DEGREE + 1):
+            for l in range(DEGREE + 1):
+                frame.E[i, r, l] = frame.E[i + 1, r, l]
+    for j in range(jb + 1, last + 1):
+        S.u[j] -= 1
+
+
+@kernel(inline=False)
+def fitted(G, k0, k1, S, ja, jb, room, steps):
+    """Fit the control points of a window anew, by least squares first; return the largest distance."""
+    worst = descended_frame(G, k0, k1, S, ja, jb, room, 1, 1, SWEEPS, FAIR, TARGET)
+    if TARGET < worst < HOPELESS:
+        worst = fitted_frame(G, k0, k1, S, ja, jb, room, 1, steps, FAIR)
+    return worst
+
+
+@kernel(inline=False)
+def thinned(G, S, last, count, room, reach, steps, simple):
+    """Take out knots from the first to the last one, as long as the curve stays near; return how many pieces are left.
+
+    Knots that were tried in vain are passed over until one nearby goes. Bounded: one fit a copy of a knot.
+    """
+    frame = room.frame
+    h, times, around = frame.h, frame.times, DEGREE + 1 if frame.times[0] < DEGREE else 1
+    k, j = around, 0
+    while k <= count - around:
+        if frame.fixed[k] or frame.tried[k]:
+            k += 1
+            continue
+        k0, k1 = window_around(frame, k - 1, k, reach, count)
+        ja, jb = samples_around(S.u, last, j, k0, k1)
+        j = ja
+        kept_frame(G, S, k0, k1, ja, jb, room, 1)
+        for i in range(k - 1, count + 1):
+            frame.lengths[i], frame.counts[i] = h[i], times[i]
+        merged = loosened(S, k, k0, k1, ja, jb, count, room)
+        netted(G, k0, k1 - merged, room)
+        worst = fitted(G, k0, k1 - merged, S, ja, jb, room, steps)
+        if worst <= TARGET and not (simple and tangled(G, S, k0, k1 - merged, ja, jb, room)):
+            closed_up(G, S, last, k, k1, jb, count, merged, room)
+            count -= merged
+            for i in range(max(k - reach, 1), min(k + reach, count)):
+                frame.tried[i] = 0
+        else:
+            for i in range(k - 1, count + 1):
+                h[i], times[i] = frame.lengths[i], frame.counts[i]
+            framed(frame, k0, k1, count)
+            restored_frame(G, S, k0, k1, ja, jb, room, 1)
+            frame.tried[k] = 1
+            k += 1
+    return count
+
+
+@kernel(inline=False)
+def tightened(G, S, last, k, count, room):
+    """Put a knot into the middle of piece k; the curve stays as it is (Boehm)."""
+    frame, u, D = room.frame, S.u, room.D
+    h, times, at, C, t = frame.h, frame.times, frame.at, frame.C, frame.t
+    knots_near(frame, k, count)
+    first, x = at[k], h[k] / 2
+    for i in range(at[count - 1] + DEGREE + 1, first + DEGREE, -1):
+        for c in range(len(D)):
+            C[i, c] = C[i - 1, c]
+    for l in range(DEGREE, 0, -1):
+        w = (x - t[l - 1]) / (t[l + DEGREE - 1] - t[l - 1])
+        for c in range(len(D)):
+            C[first + l, c] = (1 - w) * C[first + l - 1, c] + w * C[first + l, c]
+    for i in range(count, k, -1):
+        h[i], at[i] = h[i - 1], at[i - 1] + 1
+        times[i + 1], frame.fixed[i + 1], frame.tried[i + 1] = times[i], frame.fixed[i], frame.tried[i]
+        for r in range(DEGREE + 1):
+            for c in range(len(D)):
+                G[i, r, c] = G[i - 1, r, c]
+            for l in range(DEGREE + 1):
+                frame.E[i, r, l] = frame.E[i - 1, r, l]
+    h[k], h[k + 1] = x, h[k + 1] - x
+    times[k + 1], frame.fixed[k + 1], frame.tried[k + 1] = 1, 0, 0
+    for j in range(last, -1, -1):
+        if u[j] <= k:
+            break
+        u[j] = u[j] + 1 if u[j] >= k + 1 else k + 2 * (u[j] - k)
+    low, high = max(0, k - DEGREE), min(count, k + 1 + DEGREE)
+    framed(frame, low, high, count + 1)
+    netted(G, low, high, room)
+
+
+@kernel(inline=False)
+def mended(G, S, last, count, most, room, reach, steps):
+    """Fit the pieces that are too far from their samples again, or put a knot into them; return how many there are.
+
+    Given up, with most + 1, when there are more than `most`.
+    """
+    frame, around = room.frame, DEGREE + 1 if room.frame.times[0] < DEGREE else 0
+    k, j = around, 0
+    while k < count - around:
+        ja, jb = samples_around(S.u, last, j, k, k)
+        j = ja
+        worst = measured(G, k, k, S, ja, jb, room, 2, 4, math.inf, FAIR)[1]
+        if worst > TARGET:
+            k0, k1 = window_around(frame, k, k, reach, count)
+            ja, jb = samples_around(S.u, last, j, k0, k1)
+            kept_frame(G, S, k0, k1, ja, jb, room, 1)
+            if fitted(G, k0, k1, S, ja, jb, room, steps) > TARGET:
+                restored_frame(G, S, k0, k1, ja, jb, room, 1)
+                if count == most:
+                    return most + 1
+                if k > k0 and frame.h[k - 1] > 2 * frame.h[k]:  # a longer piece next to it
+                    k -= 1
+                elif k < k1 and frame.h[k + 1] > 2 * frame.h[k]:
+                    k += 1
+                tightened(G, S, last, k, count, room)
+                count += 1
+                k0, k1 = window_around(frame, k, k + 1, reach, count)
+                ja, jb = samples_around(S.u, last, ja, k0, k1)
+                fitted(G, k0, k1, S, ja, jb, room, steps)
+                k = k0
+                continue
+        k += 1
+    return count

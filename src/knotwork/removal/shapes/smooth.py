@@ -1,0 +1,281 @@
+"""Smooth splines with few knots near one curve, from the pieces of a result that is proven.
+
+Each piece gets a few simple knots, by length; a corner keeps one of full count. Least squares, then the p-norm of the
+normal distances of all control points; a knot more where that is not enough; and knots out, as long as the curve stays
+near. A closed curve is turned at last, so that the place where it was opened is one like others.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import extent
+from knotwork.removal.shapes import corners
+from knotwork.removal.shapes.bezier import ALLOWED, Curves, efforts, prepared, searched
+from knotwork.removal.shapes.frame import DEGREE, descended_frame, framed, netted
+from knotwork.removal.shapes.greedy import as_cubic
+from knotwork.removal.shapes.knots import mended, thinned, tightened
+from knotwork.removal.shapes.repair import FORCED, interpolated
+from knotwork.removal.shapes.residuals import FAIR
+from knotwork.removal.shapes.samples import counted, finely, merged
+from knotwork.removal.shapes.search import Effort, Found, Search
+
+#: knots for each piece, the joint at its end being one of them
+PARTS = 3
+#: sweeps of least squares to begin with
+SWEEPS = 3
+#: pieces of a closed curve that is turned, at least
+ROUND = 2 * DEGREE + 4
+#: the least length of a piece, per mean length
+LEAST = 1e-6
+
+
+class Smoothing(NamedTuple):
+    """How long to search for knots that can go."""
+
+    #: pieces on each side of a knot that are fitted again
+    reach: int
+    #: how often all are tried
+    passes: int
+
+
+SMOOTHINGS = {"fast": Smoothing(4, 1), "normal": Smoothing(5, 2), "best": Smoothing(7, 8)}
+
+
+class Smooth(NamedTuple):
+    """A smooth cubic spline, and the path that matches it with a curve."""
+
+    #: lengths of the pieces; how often the knot before each counts, and the one at the end
+    lengths: Array
+    times: Array
+    points: Array
+    u: Array
+    s: Array
+    #: the piece of f, if closed, where the path begins
+    start: int
+    #: whether the spline goes on around
+    round: bool
+
+
+def reduce_smooth(
+    nets: Array, tolerance: Any, *, closed: bool, periodic: bool, angle: float | None, lines: bool, keep: Any,
+    effort: str, crossings: str, rational: bool,
+) -> Smooth | None:  # fmt: skip
+    """Return a smooth spline within a distance of one curve, or none; its distance is still to be proven.
+
+    The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes.
+    """
+    given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational)
+    how = efforts(effort, crossings)
+    if not given.possible:
+        return None
+    F, hard, unit = given.nets, given.hard, given.unit
+    found = searched(given, how)[0]
+    q, d = F.shape[1] - 1, len(unit)
+    if not len(found.G):
+        if rational or q > DEGREE:
+            return None
+        found = _as_pieces(F)
+    most = ALLOWED * (len(F) + 4)
+    count = counted(F, given.at, 1 / unit, extent(d))
+    size = count + count // 2 + 64
+    room = min(most, 4 * len(found.G) + size)
+    search = SmoothSearch(F, hard, given, how[0], SMOOTHINGS[effort], size, room)
+    path = search.smoothed(found)
+    if path is None:
+        return None
+    result = search.result(path, given, 0, periodic)
+    if periodic and not _seam_stays(F, hard, angle, 1 / unit):
+        turned = search.turned(path)
+        path = search.thinner() if turned else None
+        if path is not None:
+            return search.result(path, given, turned, periodic)
+    return result
+
+
+class SmoothSearch(Search):
+    """Working space for one curve, and the search for few knots."""
+
+    def __init__(
+        self, F: Array, hard: Array, given: Curves, effort: Effort, how: Smoothing, size: int, pieces: int
+    ) -> None:
+        super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
+        self.F, self.hard, self.effort, self.how = F, hard, effort, how
+        self.target, self.most = float(given.target()[0]), pieces - 8
+        self.count = self.end = self.last = 0
+
+    def smoothed(self, found: Found) -> Found | None:
+        """Find a smooth curve from pieces, or none."""
+        self._sampled(found.s, found.u)
+        self._begun(found)
+        descended_frame(
+            self.G, 0, self.count - 1, self.samples, 0, self.last, self.room, 1, 1, SWEEPS, FAIR, 0.0
+        )  # fmt: skip
+        self.count = self._repaired(self.last, self.count, self.most, np.zeros(0), self.effort)
+        return self.thinner() if self.count <= self.most else None
+
+    def thinner(self) -> Found | None:
+        """Take out knots, and prove what is left."""
+        at = self.room.frame.at
+        for _ in range(self.how.passes):
+            before = at[self.count - 1]
+            self.count = int(
+                thinned(
+                    self.G, self.samples, self.last, self.count, self.room, self.how.reach, self.effort.steps,
+                    self.effort.simple,
+                )
+            )  # fmt: skip
+            if at[self.count - 1] == before:
+                break
+        return self._certified(self.F, self.end, self.last, self.count, self.most, self.target, self.effort)[0]
+
+    def _repaired(self, last: int, count: int, most: int, where: Array, effort: Effort) -> int:
+        self.last = last
+        self.count = int(mended(self.G, self.samples, last, count, most, self.room, self.how.reach, effort.steps))
+        return self.count
+
+    def _sampled(self, s: Array, u: Array) -> None:
+        """Take samples, with parameters from a path."""
+        self.end = int(finely(self.F, self.per, self.hard, self.fine, self.room))
+        self.last = int(merged(self.fine, self.end, self.F.shape[1] == 2, self.samples, self.room))
+        interpolated(self.samples, self.last, s, u)
+
+    def _begun(self, found: Found) -> None:
+        """Place knots on the joints of pieces and between, by length, and control points near the curve."""
+        S, frame, d = self.samples, self.room.frame, len(self.unit)
+        u, hard, pieces = S.u[: self.last + 1].copy(), S.hard[: self.last + 1] == 1, len(found.G)
+        on = _points(found.G[..., :d], u)
+        on = (on - on[0]) * self.per
+        v = np.append(0.0, np.cumsum(np.sqrt((np.diff(on, axis=0) ** 2).sum(axis=1))))
+        corner = np.zeros(pieces + 1, bool)
+        corner[np.round(u[hard]).astype(int)] = True
+        parts = np.where(corner[:-1] & corner[1:], 1, PARTS)  # a piece between corners stays alone
+        first = np.concatenate([[0], np.cumsum(parts)])
+        piece = np.repeat(np.arange(pieces), parts)
+        count = self.count = int(first[-1])
+        places = np.append(piece + (np.arange(count) - first[piece]) / parts[piece], pieces)
+        x = np.interp(places, u, v)
+        h = np.maximum(np.diff(x), max(v[-1], 1.0) * LEAST / count)
+        x = np.append(0.0, np.cumsum(h))
+        times = np.ones(count + 1, np.int64)
+        times[first[corner]] = DEGREE
+        frame.h[:count], frame.times[: count + 1] = h, times
+        frame.fixed[: count + 1], frame.tried[: count + 1] = times == DEGREE, 0
+        at = np.interp(u, places, np.arange(count + 1.0))
+        at[hard] = np.round(at[hard])
+        S.u[: self.last + 1] = at
+        frame.at[0] = 0
+        framed(frame, 0, count - 1, count)
+        knots = np.concatenate([x[:1], np.repeat(x, times), x[-1:]])
+        n = len(knots) - DEGREE - 1
+        nodes = sum(knots[1 + r : 1 + r + n] for r in range(DEGREE)) / DEGREE
+        for c in range(d):
+            frame.C[:n, c] = np.interp(nodes, v, on[:, c])
+        frame.C[self._corners()] = S.y[: self.last + 1][hard]
+        netted(self.G, 0, count - 1, self.room)
+
+    def _corners(self) -> Array:
+        """Return the control points at the knots that stay, from the first to the last."""
+        frame, count = self.room.frame, self.count
+        fixed = np.flatnonzero(frame.fixed[: count + 1])
+        n = frame.at[count - 1] + DEGREE + 1
+        return np.where(fixed < count, frame.at[np.minimum(fixed, count - 1)], n - 1)
+
+    def turned(self, path: Found) -> int:
+        """Turn a closed curve so that its seam is in the middle; return with which piece of f it begins, or 0."""
+        S, frame, F = self.samples, self.room.frame, self.F
+        u = path.u
+        while self.count < min(ROUND, self.most):
+            k = int(np.argmax(frame.h[: self.count]))
+            tightened(self.G, S, self.last, k, self.count, self.room)
+            self.count += 1
+            u = np.where(u >= k + 1, u + 1, np.where(u > k, k + 2 * (u - k), u))
+        count = self.count
+        joint = path.s == np.floor(path.s)
+        if frame.fixed[1:count].any():  # it is opened at another corner
+            joint &= (u == np.floor(u)) & (frame.fixed[np.minimum(u, count).astype(int)] != 0)
+        joint[0] = joint[-1] = False
+        if not joint.any():
+            return 0
+        j = np.flatnonzero(joint)[np.argmin(np.abs(u[joint] - count / 2))]
+        i, c = int(path.s[j]), int(u[j])
+        s = np.concatenate([path.s[j:], path.s[1 : j + 1] + len(F)]) - i
+        u = np.concatenate([u[j:], u[1 : j + 1] + count]) - c
+        at, n = frame.at[:count].copy(), frame.at[count - 1] + DEGREE + 1
+        C = np.concatenate([frame.C[at[c] : n], frame.C[1 : at[c - 1] + DEGREE + 1]])
+        # the first points of f are the origins
+        C += (self._joint(0) - self._joint(i)) * self.per
+        frame.C[: len(C)] = C
+        frame.h[:count] = np.roll(frame.h[:count], -c)
+        for flags in (frame.times, frame.fixed, frame.tried):
+            flags[:count] = np.roll(flags[:count], -c)
+            flags[count] = flags[0]
+        frame.fixed[count - c], frame.tried[: count + 1] = 0, 0
+        self.F, self.hard = np.roll(F, -i, axis=0), np.append(np.roll(self.hard[:-1], -i), self.hard[i])
+        self._sampled(s, u)
+        if not frame.fixed[0]:
+            S.hard[0] = S.hard[self.last] = 0
+            self.fine.hard[0] = self.fine.hard[self.end] = FORCED
+        frame.at[0] = 0
+        framed(frame, 0, count - 1, count)
+        netted(self.G, 0, count - 1, self.room)
+        return i
+
+    def _joint(self, i: int) -> Array:
+        """Return the point of f before piece i, or its end."""
+        d = len(self.unit)
+        row = self.F[i, 0] if i < len(self.F) else self.F[-1, -1]
+        result: Array = row[:d] / row[d] if len(row) > d else row
+        return result
+
+    def result(self, path: Found, given: Curves, turned: int, periodic: bool) -> Smooth:
+        """Return the curve in the units of what is given."""
+        frame, count, F = self.room.frame, self.count, self.F
+        n = frame.at[count - 1] + DEGREE + 1
+        points = self._joint(0) + frame.C[:n] * self.unit
+        fixed = self.samples.hard[: self.last + 1] == 1
+        for at, s in zip(self._corners(), self.samples.s[: self.last + 1][fixed].astype(int), strict=True):
+            points[at] = self._joint(s)
+        times = frame.times[: count + 1].copy()
+        if periodic:
+            points = points[DEGREE + 1 - times[0] :]
+        return Smooth(
+            frame.h[:count].copy(), times, np.ldexp(points, given.exponent), path.u, path.s,
+            (int(given.start[0]) + turned) % len(F), periodic,
+        )  # fmt: skip
+
+
+def _as_pieces(F: Array) -> Found:
+    """Return a curve of degree 3 or less as its own pieces."""
+    G = np.zeros((len(F), DEGREE + 1, F.shape[2]))
+    for net, out in zip(F, G, strict=True):
+        as_cubic(net, out, extent(F.shape[2]))
+    along = np.arange(len(F) + 1.0)
+    return Found(G, along, along, 0.0)
+
+
+def _points(G: Array, u: Array) -> Array:
+    """Return the points of cubic pieces at parameters."""
+    k = np.minimum(u.astype(int), len(G) - 1)
+    t = (u - k)[:, None]
+    p = G[k]
+    while p.shape[1] > 1:
+        p = (1 - t[..., None]) * p[:, :-1] + t[..., None] * p[:, 1:]
+    result: Array = p[:, 0]
+    return result
+
+
+def _seam_stays(F: Array, hard: Array, angle: float | None, per: Array) -> bool:
+    """Tell whether the place where a closed curve was opened is a corner, or kept."""
+    if hard[0] or hard[-1]:
+        return True
+    if angle is None:
+        return False
+    a, b = np.zeros(len(per)), np.zeros(len(per))
+    corners.tangent(F[-1], True, per, a)
+    corners.tangent(F[0], False, per, b)
+    return bool(corners.turned(a, b) < math.cos(math.radians(angle)))
