@@ -28,6 +28,7 @@ from knotwork.insertion.methods import forms, perspectives
 from knotwork.removal.shapes.bezier import reduce_bezier
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.polyline import reduce_polyline
+from knotwork.removal.shapes.smooth import reduce_smooth
 
 SOURCE = Path(kw.__file__).parent.parent
 #: one process compiles all kernels, while others do the rest
@@ -283,6 +284,8 @@ def test_plain_and_compiled_agree_on_shapes(both):
         reduce_bezier(edges, [0, 12, 29], [0.3, 0.2], closed=closed, angle=170.0, keep=[5], lines=True, effort=effort)
     wild = np.cumsum(np.random.default_rng(2).standard_normal((12, 2)) * 6, axis=0)
     reduce_bezier(np.stack([wild[:-1], wild[1:]], axis=1), [0, 11], 2.0)  # one that needs repair
+    around = {"closed": True, "periodic": True, "angle": None, "lines": False, "keep": (), "rational": False}
+    reduce_smooth(edges, 0.5, effort="fast", crossings="none-new", **around)
 
 
 @battery

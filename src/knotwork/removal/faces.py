@@ -109,7 +109,8 @@ def reduce(
     distance : "parametric" or "geometric"
         Whether points at equal parameters are compared, or shapes.
     form : "spline", "bezier" or "polyline"
-        What is asked for; at equal parameters a spline of the same degree.
+        What is asked for; at equal parameters a spline of the same degree. Between shapes, a cubic spline with simple
+        knots but at corners that stay, cubic Bézier pieces that join, or straight edges.
     effort : "fast", "normal" or "best"
         How long to search.
     keep : "corners", or a list of numbers and pairs of numbers, optional

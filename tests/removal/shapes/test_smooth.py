@@ -39,7 +39,7 @@ def check(curve, found, tolerance):
 
 def multiplicities(space):
     """Return how often the inner knots count; all of a period."""
-    values, counts = np.unique(space.knots, return_counts=True)
+    counts = np.unique(space.knots, return_counts=True)[1]
     return counts[:-1] if space.periodic else counts[1:-1]
 
 
