@@ -90,7 +90,7 @@ def test_corners_and_kept_joints_are_exact():
     found = kw.reduce(many, 0.01, distance="geometric", keep="corners")
     check(many, found, 0.01)
     assert [3, 0] in found.spline.points.tolist()
-    assert len(found.spline.points) <= 9
+    assert len(found.spline.points) <= 10
     track = polyline(coast()[:80])
     place = float(track.space.breaks[30])
     kept = kw.reduce(track, 5.0, distance="geometric", keep=[place])

@@ -190,9 +190,9 @@ def tightened(G, S, last, k, count, room):
 def mended(G, S, last, count, most, room, reach, steps):
     """Fit the pieces that are too far from their samples again, or put a knot into them; return how many there are.
 
-    Given up, with most + 1, when there are more than `most`.
+    Given up, with most + 1, when there are more than `most`. Near the start of a closed curve no knot is put in.
     """
-    frame, around = room.frame, DEGREE + 1 if room.frame.times[0] < DEGREE else 0
+    frame, around = room.frame, 1 if room.frame.times[0] < DEGREE else 0
     k, j = around, 0
     while k < count - around:
         ja, jb = samples_around(S.u, last, j, k, k)
@@ -204,10 +204,13 @@ def mended(G, S, last, count, most, room, reach, steps):
             kept_frame(G, S, k0, k1, ja, jb, room, 1)
             if fitted(G, k0, k1, S, ja, jb, room, steps) > TARGET:
                 restored_frame(G, S, k0, k1, ja, jb, room, 1)
+                if around and not DEGREE < k < count - DEGREE - 1:  # a knot here would be felt across the start
+                    k += 1
+                    continue
                 if count == most:
                     return most + 1
                 if k > k0 and frame.h[k - 1] > 2 * frame.h[k]:  # a longer piece next to it
-                    k -= 1
+                    k -= 1 if not around or k > DEGREE + 1 else 0
                 elif k < k1 and frame.h[k + 1] > 2 * frame.h[k]:
                     k += 1
                 tightened(G, S, last, k, count, room)

@@ -93,10 +93,10 @@ def _bezier(
 
 def _itself(curve: Spline, effort: str, low: int, each: bool) -> Reduction:
     """Return the curve as its own reduction."""
-    count = float(len(curve.space.breaks) - 1)
+    along = np.arange(float(len(curve.space.breaks)))
     closed = curve.space.periodic
     bound = np.zeros(curve.dim) if each else 0.0
-    matching = Matching([0.0, count], [0.0, count], closed)
+    matching = Matching(along, along, closed)
     return Reduction(curve, bound, "geometric", (), low, None, matching, effort)
 
 

@@ -7,6 +7,7 @@ near. A closed curve is turned at last, so that the place where it was opened is
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -29,7 +30,7 @@ PARTS = 3
 #: sweeps of least squares to begin with
 SWEEPS = 3
 #: pieces of a closed curve that is turned, at least
-ROUND = 2 * DEGREE + 4
+ROUND = 4 * DEGREE
 #: the least length of a piece, per mean length
 LEAST = 1e-6
 
@@ -91,7 +92,7 @@ def reduce_smooth(
     result = search.result(path, given, 0, periodic)
     if periodic and not _seam_stays(F, hard, angle, 1 / unit):
         turned = search.turned(path)
-        path = search.thinner() if turned else None
+        path = search.thinner(search.how.passes + 1) if turned else None
         if path is not None:
             return search.result(path, given, turned, periodic)
     return result
@@ -112,16 +113,17 @@ class SmoothSearch(Search):
         """Find a smooth curve from pieces, or none."""
         self._sampled(found.s, found.u)
         self._begun(found)
-        descended_frame(
-            self.G, 0, self.count - 1, self.samples, 0, self.last, self.room, 1, 1, SWEEPS, FAIR, 0.0
-        )  # fmt: skip
+        ends = np.flatnonzero(self.room.frame.fixed[: self.count + 1]).tolist()
+        there = np.flatnonzero(self.samples.hard[: self.last + 1] == 1).tolist()
+        for (k0, k1), (ja, jb) in zip(itertools.pairwise(ends), itertools.pairwise(there), strict=True):
+            descended_frame(self.G, k0, k1 - 1, self.samples, ja, jb, self.room, 1, 1, SWEEPS, FAIR, 0.0)
         self.count = self._repaired(self.last, self.count, self.most, np.zeros(0), self.effort)
-        return self.thinner() if self.count <= self.most else None
+        return self.thinner(self.how.passes) if self.count <= self.most else None
 
-    def thinner(self) -> Found | None:
+    def thinner(self, passes: int) -> Found | None:
         """Take out knots, and prove what is left."""
         at = self.room.frame.at
-        for _ in range(self.how.passes):
+        for _ in range(passes):
             before = at[self.count - 1]
             self.count = int(
                 thinned(
@@ -223,6 +225,14 @@ class SmoothSearch(Search):
         frame.at[0] = 0
         framed(frame, 0, count - 1, count)
         netted(self.G, 0, count - 1, self.room)
+        # the seam goes first, with a knot more on each side to help; those are tried with it gone
+        seam = count - c
+        frame.tried[: count + 1] = 1
+        frame.tried[seam] = 0
+        for k in (seam, seam - 1):
+            tightened(self.G, S, self.last, k, self.count, self.room)
+            self.count += 1
+            frame.tried[k + 1] = 1
         return i
 
     def _joint(self, i: int) -> Array:
