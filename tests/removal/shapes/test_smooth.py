@@ -157,7 +157,7 @@ def test_few_points_on_a_coast():
         found = kw.reduce(curve, tolerance, distance="geometric", effort=effort, crossings="allow")
         assert len(found.spline.points) <= most
         assert found.bound <= tolerance
-        assert (multiplicities(found.spline.space) == 1).all()
+        assert (multiplicities(found.spline.space)[1:] == 1).all()  # the seam may stay: see `reduce_smooth`
 
 
 def test_nets_of_a_frame_are_those_of_the_spline():

@@ -68,7 +68,8 @@ def reduce_smooth(
 ) -> Smooth | None:  # fmt: skip
     """Return a smooth spline within a distance of one curve, or none; its distance is still to be proven.
 
-    The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes.
+    The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes. Where
+    that cannot be proven, the place where it was opened stays a knot of full count.
     """
     given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational)
     how = efforts(effort, crossings)
