@@ -31,6 +31,8 @@ PARTS = 3
 SWEEPS = 3
 #: pieces of a closed curve that is turned, at least
 ROUND = 4 * DEGREE
+#: knots put in on each side of the seam, at most, so that it can go
+HELP = 4
 #: the least length of a piece, per mean length
 LEAST = 1e-6
 
@@ -68,7 +70,7 @@ def reduce_smooth(
 ) -> Smooth | None:  # fmt: skip
     """Return a smooth spline within a distance of one curve, or none; its distance is still to be proven.
 
-    The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes. Where
+    The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes. If
     that cannot be proven, the place where it was opened stays a knot of full count.
     """
     given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational)
@@ -93,7 +95,7 @@ def reduce_smooth(
     result = search.result(path, given, 0, periodic)
     if periodic and not _seam_stays(F, hard, angle, 1 / unit):
         turned = search.turned(path)
-        path = search.thinner(search.how.passes + 1) if turned else None
+        path = search.thinner() if turned else None
         if path is not None:
             return search.result(path, given, turned, periodic)
     return result
@@ -119,22 +121,25 @@ class SmoothSearch(Search):
         for (k0, k1), (ja, jb) in zip(itertools.pairwise(ends), itertools.pairwise(there), strict=True):
             descended_frame(self.G, k0, k1 - 1, self.samples, ja, jb, self.room, 1, 1, SWEEPS, FAIR, 0.0)
         self.count = self._repaired(self.last, self.count, self.most, np.zeros(0), self.effort)
-        return self.thinner(self.how.passes) if self.count <= self.most else None
+        return self.thinner() if self.count <= self.most else None
 
-    def thinner(self, passes: int) -> Found | None:
+    def thinner(self) -> Found | None:
         """Take out knots, and prove what is left."""
         at = self.room.frame.at
-        for _ in range(passes):
+        for _ in range(self.how.passes):
             before = at[self.count - 1]
-            self.count = int(
-                thinned(
-                    self.G, self.samples, self.last, self.count, self.room, self.how.reach, self.effort.steps,
-                    self.effort.simple,
-                )
-            )  # fmt: skip
+            self._thinned()
             if at[self.count - 1] == before:
                 break
         return self._certified(self.F, self.end, self.last, self.count, self.most, self.target, self.effort)[0]
+
+    def _thinned(self) -> None:
+        self.count = int(
+            thinned(
+                self.G, self.samples, self.last, self.count, self.room, self.how.reach, self.effort.steps,
+                self.effort.simple,
+            )
+        )  # fmt: skip
 
     def _repaired(self, last: int, count: int, most: int, where: Array, effort: Effort) -> int:
         self.last = last
@@ -226,15 +231,24 @@ class SmoothSearch(Search):
         frame.at[0] = 0
         framed(frame, 0, count - 1, count)
         netted(self.G, 0, count - 1, self.room)
-        # the seam goes first, with a knot more on each side to help; those are tried with it gone
-        seam = count - c
-        frame.tried[: count + 1] = 1
-        frame.tried[seam] = 0
-        for k in (seam, seam - 1):
-            tightened(self.G, S, self.last, k, self.count, self.room)
-            self.count += 1
-            frame.tried[k + 1] = 1
+        self._loosen(count - c)
         return i
+
+    def _loosen(self, seam: int) -> None:
+        """Make the seam a simple knot: with more and more knots next to it, which may go again when it has."""
+        frame = self.room.frame
+        for _ in range(HELP):
+            for k in (seam, seam - 1):
+                tightened(self.G, self.samples, self.last, k, self.count, self.room)
+                self.count += 1
+            seam += 1
+            frame.tried[: self.count + 1] = 1
+            frame.tried[seam] = 0
+            while not frame.tried[seam] and frame.times[seam] > 1:
+                self._thinned()
+            if frame.times[seam] == 1:
+                break
+        frame.tried[: self.count + 1] = 0
 
     def _joint(self, i: int) -> Array:
         """Return the point of f before piece i, or its end."""
