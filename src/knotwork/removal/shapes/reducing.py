@@ -60,6 +60,7 @@ def reduce_shape(
     given = Tolerance(curve, tolerance).given
     allowed = given.astype(np.float64) if given.dtype == object else given
     rational = curve.rational
+    in_floats(np.array(curve.space.domain), "domain", ParameterError)  # what follows spreads new knots over it
     pieces, _ = nets(curve, rational)
     closed = curve.space.periodic or (is_closed(pieces, rational) and len(pieces) > 2)
     if form == "polyline":
