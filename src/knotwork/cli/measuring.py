@@ -38,7 +38,7 @@ def flatten(file: Path, tolerance: Tolerance, output: Path, as_json: bool) -> No
     if as_json:
         print_json({"output": str(output), "vertices": [len(f.points) for f in found], "uniform": even, "bound": bound})
     else:
-        told = f"{report.counted(count, 'vertex').replace('vertexs', 'vertices')} written to {output}"
+        told = f"{report.counted(count, 'vertex', 'vertices')} written to {output}"
         click.echo(f"{told}, within {bound:.3g}; even steps would take {even:,}")
 
 

@@ -197,9 +197,9 @@ def duration(seconds: float) -> str:
     return f"{seconds * 1000:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"
 
 
-def counted(n: int, what: str) -> str:
-    """Return a count with its noun."""
-    return f"{n:,} {what}{'' if n == 1 else 's'}"
+def counted(n: int, what: str, many: str | None = None) -> str:
+    """Return a count with its noun, of which `many` is the plural if that takes more than an s."""
+    return f"{n:,} {what if n == 1 else many or what + 's'}"
 
 
 def _knots(space: SplineSpace) -> str:

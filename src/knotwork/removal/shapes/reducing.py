@@ -137,9 +137,7 @@ def _smooth(
     )  # fmt: skip
     if found is None or len(found.points) >= curve.space.dimension:
         return _itself(curve, effort, low, each)
-    a, b = in_floats(np.array(curve.space.domain), "domain", ParameterError).tolist()
-    t = increasing(found.lengths, periodic)
-    t = a + t * ((b - a) / t[-1])
+    t = over_domain(found.lengths, curve.space.domain, periodic)
     if periodic:
         space = SplineSpace(3, np.append(np.repeat(t[:-1], found.times[:-1]), t[-1]), periodic=True)
     else:
@@ -187,11 +185,16 @@ def _features(curve: Spline, pieces: Array, keep: Any) -> tuple[float | None, bo
 
 def breaks_by_length(new: Array, domain: Sequence[Any], closed: bool) -> Array:
     """Return breaks over a domain that follow the lengths of pieces."""
-    a, b = (float(x) for x in domain)
     chord = np.sqrt(((new[:, -1] - new[:, 0]) ** 2).sum(axis=1))
     polygon = np.sqrt((np.diff(new, axis=1) ** 2).sum(axis=2)).sum(axis=1)
-    t = increasing(chord / 2 + polygon / 2, closed)
-    return a + t * ((b - a) / t[-1]) if t[-1] > 0 else np.linspace(a, b, len(new) + 1)
+    return over_domain(chord / 2 + polygon / 2, domain, closed)
+
+
+def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:
+    """Return breaks over a domain whose intervals are to each other as lengths; even ones where all lengths are 0."""
+    a, b = (float(x) for x in domain)
+    t = increasing(lengths, closed)
+    return a + t * ((b - a) / t[-1]) if t[-1] > 0 else np.linspace(a, b, len(lengths) + 1)
 
 
 def _lower_bound(pieces: Array, allowed: Any, closed: bool, rational: bool, degree: int) -> int:

@@ -79,8 +79,12 @@ class Reader:
                 child, parent = record["REPRESENTATION_RELATIONSHIP"][2:4]
                 operator = record["REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION"][0]
                 parents[child].append((parent, self._between(*self._operator(operator))))
+        owners: dict[int, int] = {}
+        for key, content in items.items():
+            for item in content:
+                owners.setdefault(item, key)
         for key in self.text.named.get("MAPPED_ITEM", []):
-            owner = next((r for r, content in items.items() if key in content), None)
+            owner = owners.get(key)
             _, source, target = self.text.record(key)["MAPPED_ITEM"]
             origin, mapped = self.text.record(source)["REPRESENTATION_MAP"]
             if owner is not None:
