@@ -40,7 +40,7 @@ bench-removal: .venv/tested  ## control points that `reduce` leaves, and its tim
 check-removal: .venv/tested  ## bounds of random reductions, worked out again in fractions: make check-removal NUMBER=10000
 	$(BIN)/python tests/removal/again.py $(NUMBER)
 
-methods: .venv/tested  ## race all methods of knot insertion; docs/figures_insertion_study.py draws the result
+methods: .venv/tested  ## race all methods of knot insertion; docs/figures/insertion_study.py draws the result
 	$(BIN)/python benchmarks/methods.py
 
 crossovers: .venv/tested  ## measure and print what insert(method="auto") goes by

@@ -1,20 +1,18 @@
 """Every figure of chapter 7 is drawn, and its strokes are read as what the figure shows."""
 
-import importlib.util
+import importlib
 from pathlib import Path
 
 import pytest
 
 plt = pytest.importorskip("matplotlib.pyplot", reason="matplotlib is not installed")
-SCRIPT = Path(__file__).parents[2] / "docs" / "figures_sketching.py"
+FOLDER = Path(__file__).parents[2] / "docs" / "figures"
 
 
-@pytest.fixture(scope="module")
-def figures():
-    spec = importlib.util.spec_from_file_location("figures_sketching", SCRIPT)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+@pytest.fixture
+def figures(monkeypatch):
+    monkeypatch.syspath_prepend(FOLDER)
+    return importlib.import_module("sketching")
 
 
 def test_no_figure_of_the_chapter_is_missing(figures):

@@ -1,19 +1,12 @@
-"""Make the picture of reduction.md: python docs/figures_removal.py."""
+"""Make the picture of reduction.md: python docs/figures/removal.py."""
 
-from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import EXAMPLES, plt, save
 
 import knotwork as kw
 from knotwork.plotting import INK, KNOT, NET, PALE
-
-EXAMPLES = Path(__file__).parent.parent / "examples"
-IMAGES = Path(__file__).with_name("images")
 
 
 def noisy(ax: Any) -> None:
@@ -83,7 +76,7 @@ def main() -> None:
     fig = plt.figure(figsize=(12, 8), layout="constrained")
     for k, draw in enumerate((noisy, airfoil, coast, surface)):
         draw(fig.add_subplot(2, 2, k + 1, projection="3d" if draw is surface else None))
-    fig.savefig(IMAGES / "reduction.png", dpi=110)
+    save(fig, "reduction.png", dpi=110)
 
 
 if __name__ == "__main__":

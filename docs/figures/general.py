@@ -1,22 +1,17 @@
-"""Make the pictures of the documentation: python docs/figures.py."""
+"""Make the pictures of the documentation: python docs/figures/general.py."""
 
 import re
 import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import EXAMPLES, IMAGES, plt, save
 
 import knotwork as kw
 from knotwork import cli
 from knotwork.plotting import INK, KNOT
 
-EXAMPLES = Path(__file__).parent.parent / "examples"
-IMAGES = Path(__file__).with_name("images")
 HUES = [INK, KNOT, "#3c8d6e", "#b58a1b", "#7a4f9a"]
 
 
@@ -67,7 +62,7 @@ def periodic() -> None:
         plane.annotate(name, p, offset, textcoords="offset points", ha="center", va="center", color=KNOT)
     plane.margins(0.14)
     plane.set_axis_off()
-    fig.savefig(IMAGES / "periodic.png", dpi=150)
+    save(fig, "periodic.png")
 
 
 def drawing() -> None:
@@ -109,7 +104,6 @@ def reduction() -> None:
 
 
 if __name__ == "__main__":
-    IMAGES.mkdir(exist_ok=True)
     periodic()
     drawing()
     reduction()

@@ -1,12 +1,7 @@
-"""Make the picture of geometry.md: python docs/figures_geometry.py."""
+"""Make the picture of geometry.md: python docs/figures/geometry.py."""
 
-from pathlib import Path
-
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import plt, save
 
 import knotwork as kw
 from knotwork.plotting import INK, KNOT, NET
@@ -30,7 +25,7 @@ def main():
     right.plot(*c(kw.inflections(c).values).T, "o", color=KNOT)
     right.plot(*c(kw.extrema(c, [0, 1]).values).T, "s", color=INK, ms=4)
     right.set_aspect("equal")
-    figure.savefig(Path(__file__).with_name("images") / "geometry.png", dpi=110)
+    save(figure, "geometry.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -1,26 +1,19 @@
-"""Make the pictures of insertion/counts.md, errors.md and speed.md: python docs/figures_insertion_study.py.
+"""Make the pictures of insertion/counts.md, errors.md and speed.md: python docs/figures/insertion_study.py.
 
 Counts are made anew; errors and times are those that `make accuracy` and `make methods` left in benchmarks/.
 """
 
 import json
 from dataclasses import astuple
-from pathlib import Path
 
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import GOLD, GREEN, GREY, PLUM, ROOT, plain, plt, save
 
 import knotwork as kw
 from knotwork.insertion import METHODS, count
 from knotwork.plotting import INK, KNOT
 
-HERE = Path(__file__).parent
-IMAGES = HERE / "images" / "insertion"
-MEASURED = HERE.parent / "benchmarks"
-GREEN, GOLD, PLUM, GREY = "#3c8d6e", "#b58a1b", "#7a4b8c", "#8a8f96"
+MEASURED = ROOT / "benchmarks"
 
 #: methods that pictures compare, with their colour and the dash of the line
 SHOWN = {
@@ -36,12 +29,6 @@ SHOWN = {
     "factored-split": (PLUM, (0, (4, 2))),
     "merge": ("black", (0, (1, 1.5))),
 }
-
-
-def plain(ax, **what):
-    """Take the box away and set what is given."""
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.set(**what)
 
 
 def spread(n, m, intervals, d=3):
@@ -97,7 +84,7 @@ def counts():
     )
     right.set_ylim(0)
     right.legend(frameon=False, handlelength=3, fontsize=8)
-    fig.savefig(IMAGES / "counts.png", dpi=130)
+    save(fig, "insertion/counts.png", dpi=130)
 
 
 def errors():
@@ -120,7 +107,7 @@ def errors():
     axes[0].set_ylabel("error in units of $2^{-53}$")
     axes[1].annotate("as large as the points", (1, 2.0**53), (0, 3), textcoords="offset points", fontsize=8, color=GREY)
     axes[0].legend(frameon=False, handlelength=3, fontsize=8, loc="upper left", bbox_to_anchor=(0, 0.98))
-    fig.savefig(IMAGES / "errors.png", dpi=130)
+    save(fig, "insertion/errors.png", dpi=130)
 
 
 def speed():
@@ -147,10 +134,9 @@ def speed():
     axes[0].set_yticks(range(len(names)), names, fontsize=8)
     axes[0].invert_yaxis()
     axes[0].legend(frameon=False, loc="lower right")
-    fig.savefig(IMAGES / "speed.png", dpi=130)
+    save(fig, "insertion/speed.png", dpi=130)
 
 
 if __name__ == "__main__":
-    IMAGES.mkdir(parents=True, exist_ok=True)
     for picture in (counts, errors, speed):
         picture()

@@ -1,12 +1,7 @@
-"""Make the pictures of the progressive bases: python docs/figures_progressive_bases.py."""
+"""Make the pictures of the progressive bases: python docs/figures/progressive_bases.py."""
 
-from pathlib import Path
-
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import GREY, plt, save
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
@@ -23,9 +18,7 @@ from knotwork.progressive import (
     power,
 )
 
-IMAGES = Path(__file__).with_name("images") / "progressive"
 HUES = [INK, KNOT, "#3c8d6e", "#b58a1b", "#7a4f9a"]
-GREY = "#70757a"
 
 
 def functions(axes: Axes, values: np.ndarray, t: np.ndarray, at: list[float], names: str = "b_0 b_1 b_2 b_3") -> None:
@@ -89,7 +82,7 @@ def named() -> None:
             axes.axvspan(2, 3, color=INK, alpha=0.07, linewidth=0)
         on_the_axis(axes, sequence)
         axes.set_title(title, fontsize=10, color="#303438")
-    fig.savefig(IMAGES / "bases.png", dpi=130)
+    save(fig, "progressive/bases.png", dpi=130)
 
 
 def hermite() -> None:
@@ -121,7 +114,7 @@ def hermite() -> None:
     plane.set_aspect("equal")
     plane.margins(0.12)
     plane.set_axis_off()
-    fig.savefig(IMAGES / "hermite.png", dpi=130)
+    save(fig, "progressive/hermite.png", dpi=130)
 
 
 def complex_knots() -> None:
@@ -152,11 +145,10 @@ def complex_knots() -> None:
     bare(roots)
     roots.set_xticks([0, np.pi, 2 * np.pi], ["θ = 0", "π", "2π"])
     roots.set_title("power at the fifth roots of unity, on the unit circle", fontsize=9)
-    fig.savefig(IMAGES / "complex-knots.png", dpi=130)
+    save(fig, "progressive/complex-knots.png", dpi=130)
 
 
 if __name__ == "__main__":
-    IMAGES.mkdir(parents=True, exist_ok=True)
     named()
     hermite()
     complex_knots()

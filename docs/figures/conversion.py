@@ -1,27 +1,14 @@
-"""Make the pictures of conversion.md: python docs/figures_conversion.py."""
+"""Make the pictures of conversion.md: python docs/figures/conversion.py."""
 
-from pathlib import Path
-
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import GREEN, plain, plt, save
 
 import knotwork as kw
 from knotwork.conversion.nesting import common_refinement, embedding
 from knotwork.conversion.oslo import conversion_matrix
 from knotwork.plotting import INK, KNOT, NET
 
-IMAGES = Path(__file__).with_name("images") / "conversion"
-GREEN, GOLD = "#3c8d6e", "#b58a1b"
 WAYS = {"oslo": KNOT, "interpolation": INK, "least-squares": GREEN}
-
-
-def plain(ax, **what):
-    """Take the box away and set what is given."""
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.set(**what)
 
 
 def pieces_of(polynomial, ell):
@@ -55,7 +42,7 @@ def stability() -> None:
         plain(ax, title=f"degree {k - 1}", xlabel="ℓ, interior breaks removed")
     axes[0].set_ylabel("error of the coefficients")
     axes[0].legend(frameon=False)
-    fig.savefig(IMAGES / "stability.png", dpi=150)
+    save(fig, "conversion/stability.png")
     for k in (3, 4, 6):
         for ell in (1, 10, 100, 1000):
             norm, errors = losses(k, ell)
@@ -79,7 +66,7 @@ def joining() -> None:
         ax.set_title(title)
         ax.set_axis_off()
         ax.margins(0.08)
-    fig.savefig(IMAGES / "joining.png", dpi=150)
+    save(fig, "conversion/joining.png")
 
 
 def lowering() -> None:
@@ -101,11 +88,10 @@ def lowering() -> None:
         axes[1].axhline(side * found.bound, color=GREEN, linewidth=1, linestyle=":")
     axes[1].annotate("bound", (0, found.bound), (2, 3), textcoords="offset points", color=GREEN)
     plain(axes[1], title="their difference and its coefficients", xlabel="u")
-    fig.savefig(IMAGES / "lowering.png", dpi=150)
+    save(fig, "conversion/lowering.png")
 
 
 if __name__ == "__main__":
-    IMAGES.mkdir(exist_ok=True, parents=True)
     stability()
     joining()
     lowering()

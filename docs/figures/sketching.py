@@ -1,4 +1,4 @@
-"""Make the pictures of sketching.md, Figures 7.1 to 7.22 of the book: python docs/figures_sketching.py.
+"""Make the pictures of sketching.md, Figures 7.1 to 7.22 of the book: python docs/figures/sketching.py.
 
 The book gives numbers for Figs. 7.19 to 7.21 only; the strokes of the others are our own.
 """
@@ -7,14 +7,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
-
-matplotlib.use("agg")
-from matplotlib import pyplot as plt
+from common import ROOT, plt, save
 
 import knotwork as kw
 from knotwork.plotting import INK, KNOT, NET
@@ -23,8 +19,7 @@ from knotwork.sketch.polygon import crossings, side_of_shadow
 from knotwork.sketch.rules import changed, cut
 from knotwork.sketch.straight import Straight
 
-IMAGES = Path(__file__).with_name("images") / "sketching"
-KNOB = Path(__file__).parents[1] / "tests" / "sketch" / "knob.json"
+KNOB = ROOT / "tests" / "sketch" / "knob.json"
 #: a flat polygon with a peak
 PEAK = [[0, 0], [2, 0], [4, 0], [5, 3], [6, 0], [10, 0]]
 #: a polygon that a level stroke crosses four times, and one that it crosses three times
@@ -230,6 +225,5 @@ def picture(names: list[str]) -> Any:
 
 
 if __name__ == "__main__":
-    IMAGES.mkdir(exist_ok=True)
     for name, figures in PICTURES.items():
-        picture(figures).savefig(IMAGES / f"{name}.png", dpi=130)
+        save(picture(figures), f"sketching/{name}.png", dpi=130)
