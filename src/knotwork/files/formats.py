@@ -65,6 +65,14 @@ FORMATS = (
     Format("cad.wavefront", "Wavefront free form", (".obj",), "curves and surfaces", "curves and surfaces"),
     Format("cad.iges", "IGES", (".igs", ".iges"), "curves and surfaces, B-splines in place", "curves and surfaces"),
     Format(
+        "cad.dxf",
+        "DXF drawing",
+        (".dxf",),
+        "curves, splines and polylines in place",
+        "curves",
+        needs="ezdxf",
+    ),
+    Format(
         "fonts",
         "font",
         (".ttf", ".otf", ".woff"),
