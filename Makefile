@@ -7,13 +7,16 @@ CORES ?= auto
 # Random results of each kind that `make check-removal` works out again.
 NUMBER ?= 1000
 
-.PHONY: help demo test thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
+.PHONY: help demo book test thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
 
 demo: .venv/installed  ## reduce a drawing and a coastline, and show what happened
 	$(BIN)/python examples/demo.py
+
+book: .venv/installed  ## draw all figures and tables of the book on one page, build/book.html
+	$(BIN)/python docs/book/book.py
 
 test: .venv/tested  ## run the tests on all cores
 	$(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup

@@ -214,13 +214,25 @@ def picture(names: list[str]) -> Any:
     for ax in axes.flat[len(names) :]:
         ax.set_visible(False)
     for ax, name in zip(axes.flat, names, strict=False):
-        draw, title = FIGURES[name]
-        draw(ax)
-        ax.set_aspect("equal", adjustable="datalim")
-        ax.margins(0.08)
-        ax.autoscale_view()
-        ax.set_axis_off()
-        ax.set_title(f"Fig. {name}: {title}", fontsize=9)
+        place(ax, name, f"Fig. {name}: ")
+    return fig
+
+
+def place(ax: Axes, name: str, before: str = "") -> None:
+    """Draw a figure into its place."""
+    draw, title = FIGURES[name]
+    draw(ax)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.margins(0.08)
+    ax.autoscale_view()
+    ax.set_axis_off()
+    ax.set_title(before + title, fontsize=9)
+
+
+def alone(name: str) -> Any:
+    """Return a picture of one figure."""
+    fig, ax = plt.subplots(figsize=(4.4, 2.6), layout="constrained")
+    place(ax, name)
     return fig
 
 

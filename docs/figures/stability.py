@@ -151,30 +151,38 @@ FIGURES: dict[str, tuple[Callable[[Any], None], str]] = {
     "6.9": (extremal(4, float(kw.stability.worst(4).s)), "order 4, the worst s"),
     "6.10": (extremal(4, 1 / (1 + np.exp(-1 / 4))), "order 4, $s = 1/(1 + e^{-1/4})$"),
 }
-#: pictures by what they show together: the name of the file, the figures in it, and the size
+#: pictures by what they show together: the name of the file, and the figures in it
 PICTURES = {
-    "uniform": (["6.1", "6.2"], (11, 3.4)),
-    "landscape": (["6.3", "6.4"], (10, 4.3)),
-    "balance": (["6.5", "6.6", "6.7"], (11, 3.4)),
-    "extremal": (["6.8", "6.9", "6.10"], (11, 3.8)),
+    "uniform": ["6.1", "6.2"],
+    "landscape": ["6.3", "6.4"],
+    "balance": ["6.5", "6.6", "6.7"],
+    "extremal": ["6.8", "6.9", "6.10"],
 }
 
 
-def place(fig: Any, rows: int, columns: int, index: int, name: str) -> None:
-    """Draw a figure into its place of a picture."""
+def place(fig: Any, columns: int, index: int, name: str) -> None:
+    """Draw a figure into its place of a row."""
     draw, title = FIGURES[name]
-    ax = fig.add_subplot(rows, columns, index, projection="3d" if draw is landscape else None)
+    ax = fig.add_subplot(1, columns, index, projection="3d" if draw is landscape else None)
     draw(ax)
-    ax.set_title(f"Fig. {name}: {title}", fontsize=10)
+    ax.set_title(title, fontsize=10)
 
 
-def picture(name: str) -> Any:
+def alone(name: str) -> Any:
+    """Return a picture of one figure."""
+    fig = plt.figure(figsize=(4.4, 3.6), layout="constrained")
+    place(fig, 1, 1, name)
+    return fig
+
+
+def picture(names: list[str]) -> Any:
     """Return a picture of some figures side by side."""
-    names, size = PICTURES[name]
-    fig = plt.figure(figsize=size, layout="constrained")
-    more = name == "uniform"
-    for k, number in enumerate(names):
-        place(fig, 1, len(names) + more, k + 1, number)
+    more = names == PICTURES["uniform"]
+    columns = len(names) + more
+    fig = plt.figure(figsize=(11, 3.6 if columns == 3 else 4.3), layout="constrained")
+    for k, name in enumerate(names):
+        place(fig, columns, k + 1, name)
+        fig.axes[-1].set_title(f"Fig. {name}: {FIGURES[name][1]}", fontsize=10)
     if more:
         ax = fig.add_subplot(1, 3, 3)
         curves(ax, range(5, 13))
@@ -208,6 +216,6 @@ def refinement() -> Any:
 
 
 if __name__ == "__main__":
-    for name in PICTURES:
-        save(picture(name), f"stability/{name}.png")
+    for name, figures in PICTURES.items():
+        save(picture(figures), f"stability/{name}.png")
     save(refinement(), "stability/refinement.png")
