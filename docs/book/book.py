@@ -221,7 +221,8 @@ nav a { margin-right: 1rem; } h1, h2 { font-weight: 600; } h2 { margin-top: 3rem
 figure { margin: 0; } figure svg, figure img { display: block; max-width: 100%; height: auto; margin: auto; }
 figure img { max-width: min(100%, 27rem); }
 figcaption { color: #55606b; font-size: 0.9rem; margin-top: 0.4rem; } .wide { overflow-x: auto; margin: 2rem 0; }
-table { border-collapse: collapse; font-size: 0.85rem; } caption { text-align: left; min-width: 20rem; margin-bottom: 0.4rem; }
+table { border-collapse: collapse; font-size: 0.85rem; }
+caption { text-align: left; min-width: 20rem; margin-bottom: 0.4rem; }
 td, th { border-bottom: 1px solid #dde2e7; padding: 0.2rem 0.7rem 0.2rem 0; text-align: left; white-space: nowrap; }
 """
 
