@@ -7,7 +7,7 @@ CORES ?= auto
 # Random results of each kind that `make check-removal` works out again.
 NUMBER ?= 1000
 
-.PHONY: help demo book test thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
+.PHONY: help demo book docs test thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -17,6 +17,9 @@ demo: .venv/installed  ## reduce a drawing and a coastline, and show what happen
 
 book: .venv/installed  ## draw all figures and tables of the book on one page, build/book.html
 	$(BIN)/python docs/book/book.py
+
+docs: .venv/documented  ## build the site, build/site/index.html: warnings are errors
+	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs build/site
 
 test: .venv/tested  ## run the tests on all cores
 	$(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
@@ -63,6 +66,10 @@ clean:  ## remove .venv and all that was built
 
 .venv/tested: .venv/installed
 	$(BIN)/python -m pip install --quiet --group test
+	touch $@
+
+.venv/documented: .venv/installed
+	$(BIN)/python -m pip install --quiet --group docs
 	touch $@
 
 .venv/linted: .venv/tested

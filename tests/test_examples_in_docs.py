@@ -155,6 +155,15 @@ def test_the_pictures_of_the_pages_are_there():
                 assert (page.parent / link).exists(), f"{page.relative_to(ROOT)} links to {link}"
 
 
+def test_the_site_has_all_pages():
+    """Those that docs/conf.py makes are in its list as well."""
+    listed = re.findall(r"(?:file|root): (\S+)", (ROOT / "docs" / "toc.yml").read_text())
+    pages = {page.relative_to(ROOT / "docs").with_suffix("").as_posix() for page in (ROOT / "docs").rglob("*.md")}
+    made = {"made/names", "made/commands"}
+    assert len(listed) == len(set(listed))
+    assert set(listed) == {page for page in pages if not page.startswith("paper/")} | made
+
+
 def check_the_first_block(names, place):
     """What the comments beside the lines say."""
     c, finer, thin, smooth = (names[name] for name in ("c", "finer", "thin", "smooth"))

@@ -162,7 +162,7 @@ def _code(entry: dict[str, Any]) -> str:
 
 def _link(entry: dict[str, Any]) -> str:
     page = entry.get("page", "")
-    return f"[{page}](../{page})" if page else ""
+    return f"[{page.removesuffix('.md').removesuffix('/README')}](../{page})" if page else ""
 
 
 def _table(head: list[str], rows: list[list[str]]) -> str:
@@ -194,10 +194,7 @@ def page() -> str:
             rows = [["".join(f"({x}) " for x in n.split()).strip(), e["says"], _code(e)] for n, e in equations.items()]
             text.append(_table(["equation", "says", "code"], rows))
         if theorems := _of(chapter, "theorems"):
-            rows = [
-                [n, e["says"], f"[{e['test'].partition('::')[2]}](../../tests/{e['test'].partition('::')[0]})"]
-                for n, e in theorems.items()
-            ]
+            rows = [[n, e["says"], f"`{e['test'].partition('::')[2]}`"] for n, e in theorems.items()]
             text.append(_table(["", "says", "test"], rows))
         rows = [
             [f"[Fig. {part}](../{file_of(part)})", caption(part), ours(part)]
