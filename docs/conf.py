@@ -31,19 +31,17 @@ napoleon_use_rtype = False
 def names_by_task() -> str:
     """Return the page of all names with their help: the lists of reference.md, each name with its docstring."""
     page = (HERE / "reference.md").read_text(encoding="utf-8")
-    lines = ["# Help, name by name", "", "What `help` shows of every name, by task; in short: [all names](../reference.md)."]
+    lines = ["# Help, name by name", "", "What `help` shows, by task; in short: [all names](../reference.md)."]
     for line in page.splitlines():
-        found = re.match(r"- `kw\.(\w+)(\.\w+)?`", line)
+        found = re.match(r"- `kw\.(\w+)`", line)
         if line.startswith("## ") and "has and does" not in line:
             lines += ["", line, ""]
-        elif found and found[2] is None:
-            name = found[1]
-            thing = getattr(kw, name)
-            kind = "class" if isinstance(thing, type) else "module" if not callable(thing) else "function"
-            kind = "exception" if kind == "class" and issubclass(thing, BaseException) else kind
-            if kind == "module":
-                continue
-            lines += ["```{eval-rst}", f".. auto{kind}:: knotwork.{name}", *(["   :members:"] * (kind == "class")), "```"]
+        elif found and callable(thing := getattr(kw, found[1])):
+            kind = "function"
+            if isinstance(thing, type):
+                kind = "exception" if issubclass(thing, BaseException) else "class"
+            members = ["   :members:"] if kind == "class" else []
+            lines += ["```{eval-rst}", f".. auto{kind}:: knotwork.{found[1]}", *members, "```"]
     return "\n".join(lines) + "\n"
 
 
