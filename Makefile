@@ -7,7 +7,7 @@ CORES ?= auto
 # Random results of each kind that `make check-removal` works out again.
 NUMBER ?= 1000
 
-.PHONY: help demo book docs test thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
+.PHONY: help demo book docs test slow thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -24,11 +24,14 @@ docs: .venv/documented  ## build the site, build/site/index.html: warnings are e
 test: .venv/tested  ## run the tests on all cores
 	$(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
 
-thorough: .venv/tested  ## the same with a thousand new random examples for each property: takes long
-	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
+slow: .venv/tested  ## the tests that compile much or work long, which `make test` leaves out
+	$(BIN)/python -m pytest -m slow --numprocesses $(CORES) --dist loadgroup
+
+thorough: .venv/tested  ## all tests, with a thousand new random examples for each property: takes long
+	HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m "" --numprocesses $(CORES) --dist loadgroup
 
 bounds: .venv/tested  ## the tests, all compiled and with every index checked, and random periods with knots close together
-	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python -m pytest --numprocesses $(CORES) --dist loadgroup
+	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python -m pytest -m "" --numprocesses $(CORES) --dist loadgroup
 	KNOTWORK_JIT=always NUMBA_BOUNDSCHECK=1 $(BIN)/python tests/test_periodic.py 300000
 
 lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src

@@ -111,7 +111,7 @@ def battery(test):
             both |= before
         both |= TRIED[key]
 
-    return compiling(run)
+    return pytest.mark.slow(compiling(run))
 
 
 def points(rng, dtype, *shape):
@@ -316,6 +316,7 @@ def import_all():
             importlib.import_module(module.name)
 
 
+@pytest.mark.slow
 @compiling
 def test_every_kernel_is_tried(both):
     """A new kernel that nothing here reaches fails: let `work_on` do what needs it."""

@@ -217,7 +217,7 @@ def test_two_fingers_move_the_sheet_and_draw_nothing(browser, served):
     context.close()
 
 
-@pytest.mark.parametrize("kind", ["JSON", "NPZ", "SVG"])
+@pytest.mark.parametrize("kind", ["JSON", "NPZ", "SVG", "DXF"])
 def test_what_is_taken_away_is_read_again(sheet, tmp_path, kind):
     curve = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
     sheet.bring(curve, tmp_path)
@@ -230,6 +230,47 @@ def test_what_is_taken_away_is_read_again(sheet, tmp_path, kind):
     (back,) = kw.read(target)
     flip = [1, -1] if kind == "SVG" else [1, 1]
     assert np.allclose(back.points * flip, curve.points, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("vertices", [200, 5_000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_a_long_curve_opens_pans_and_takes_strokes(sheet, tmp_path, record_property, vertices):
+    """How long a stroke and a frame take is told at the end of the run."""
+    x = np.linspace(0, 1000, vertices)
+    points = np.stack([x, 20 * np.sin(x / 40)], axis=1)
+    kw.write(tmp_path / "curve.json", [kw.curve(points, 3)])
+    with sheet.change(seconds=60):
+        sheet.page.set_input_files("#file", tmp_path / "curve.json")
+    sheet.until("n => app.drawing.curves[0].points.length === n", arg=vertices)
+    frames = sheet.page.evaluate(
+        """async () => {
+            const times = [];
+            for (let k = 0; k < 20; k++) {
+                const start = performance.now();
+                app.pan(3, 0);
+                await new Promise(requestAnimationFrame);
+                times.push(performance.now() - start);
+            }
+            return times;
+        }"""
+    )
+    # strokes of a pen over ten vertices, seen from near
+    a, b = points[vertices // 2], points[vertices // 2 + 10]
+    sheet.page.evaluate(
+        "([x, y, width]) => { [app.camera.x, app.camera.y, app.camera.scale] = [x, y, 400 / width]; app.show(); }",
+        [*(a + b) / 2, float(b[0] - a[0])],
+    )
+    sheet.page.evaluate("app.times.length = 0")
+    for k in range(8):
+        above = np.array([0, (30 + 5 * k) * (b[0] - a[0]) / 400])
+        with sheet.change(seconds=60):  # kernels may be compiled meanwhile
+            sheet.draw(sheet.at((a + above).tolist()), sheet.at(b.tolist()))
+    sheet.until("app.times.length === 8")
+    assert abs(len(sheet.curves[0]["points"]) - vertices) < 100
+    strokes = sheet.page.evaluate("app.times")
+    record_property(
+        f"editor, {vertices:,} vertices",
+        f"stroke to picture {np.median(strokes):.0f} ms, a frame while panning {np.median(frames):.0f} ms",
+    )
 
 
 def test_two_tabs_show_the_same(sheet, served):

@@ -23,6 +23,7 @@ EXPORTS = {
     "svg": "image/svg+xml",
     "json": "application/json",
     "npz": "application/octet-stream",
+    "dxf": "image/vnd.dxf",
     "csv": "text/csv",
     "py": "text/x-python",
 }

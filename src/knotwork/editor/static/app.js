@@ -34,6 +34,8 @@ export class App {
     /** @type {{path: number[][], pressure: number[] | null} | null} */
     this.lastStroke = null;
     this.times = /** @type {number[]} */ ([]);
+    /** whether a file was brought, and its curves are to be seen when they come */
+    this.expected = false;
     /** @type {Promise<Record<string, any>>} the last change that was asked for */
     this.last = Promise.resolve({});
     this.token = new URLSearchParams(location.search).get("token") ?? "";
@@ -92,7 +94,10 @@ export class App {
     for (const vertex of this.vertices) if (vertex >= count) this.vertices.delete(vertex);
     this.preview = null;
     this.lens = {};
-    if (fresh) this.camera.show(this.drawing.box(), this.covered());
+    if (fresh || (this.expected && news.case === "imported")) {
+      this.camera.show(this.drawing.box(), this.covered());
+      this.expected = false;
+    }
     if (news.reason) this.say(news.case, news.reason);
     this.show();
     this.look();

@@ -119,10 +119,10 @@ export class Documents {
   /** @param {File[]} files */
   async bring(files) {
     for (const file of files) {
+      this.app.expected = true;
       const url = `/import/${this.current}?token=${encodeURIComponent(this.app.token)}&name=${encodeURIComponent(file.name)}`;
       const answer = await (await fetch(url, { method: "POST", body: file })).json();
       this.app.say(answer.error ? "Not done" : "Imported", answer.error ?? answer.reason);
-      if (!answer.error) setTimeout(() => this.app.showAll(), 50);
     }
     $("file").value = "";
   }

@@ -37,11 +37,7 @@ export class Drawing {
         if (name === "at" || name === "whole") continue;
         if (!ARRAYS.includes(name)) curve[name] = value;
         else if (value.drop === null) curve[name] = value.put;
-        else {
-          const array = curve[name].slice();
-          array.splice(value.at, value.drop, ...value.put);
-          curve[name] = array;
-        }
+        else curve[name] = curve[name].slice(0, value.at).concat(value.put, curve[name].slice(value.at + value.drop));
       }
       this.curves[change.at] = curve;
     }

@@ -5,8 +5,10 @@ import { at } from "./drawing.js";
 /** @typedef {import("./app.js").App} App */
 
 const SVG = "http://www.w3.org/2000/svg";
-/** vertices up to which handles are drawn one by one */
+/** vertices in sight up to which handles are drawn one by one */
 const HANDLES = 1500;
+/** pixels below which the steps of a polygon or a curve are not told apart */
+const FINE = 0.7;
 
 /** @param {string} name */
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
@@ -61,6 +63,7 @@ function grid(pen, camera) {
 }
 
 /**
+ * Draw cubic pieces: those in sight, and those shorter than a pixel as one line.
  * @param {CanvasRenderingContext2D} pen @param {App["camera"]} camera
  * @param {number[][]} pieces @param {string} ink @param {number} width
  */
@@ -70,12 +73,23 @@ function trace(pen, camera, pieces, ink, width) {
   pen.strokeStyle = ink;
   pen.lineWidth = width;
   pen.beginPath();
-  let [ex, ey] = [NaN, NaN];
+  let [ex, ey] = [NaN, NaN]; // where the last piece ends
+  let [px, py] = [NaN, NaN]; // where the pen is
   for (const p of pieces) {
-    if (p[0] !== ex || p[1] !== ey) pen.moveTo(ox + p[0] * scale, oy - p[1] * scale);
-    pen.bezierCurveTo(ox + p[2] * scale, oy - p[3] * scale, ox + p[4] * scale, oy - p[5] * scale, ox + p[6] * scale, oy - p[7] * scale);
+    const ax = ox + p[0] * scale, bx = ox + p[2] * scale, dx = ox + p[4] * scale, fx = ox + p[6] * scale;
+    const ay = oy - p[1] * scale, by = oy - p[3] * scale, dy = oy - p[5] * scale, fy = oy - p[7] * scale;
+    const jump = p[0] !== ex || p[1] !== ey;
     ex = p[6];
     ey = p[7];
+    const [left, right, top, bottom] = [Math.min(ax, bx, dx, fx), Math.max(ax, bx, dx, fx), Math.min(ay, by, dy, fy), Math.max(ay, by, dy, fy)];
+    if (right < -width || left > w + width || bottom < -width || top > h + width) {
+      if (px === px) pen.lineTo(ax, ay);
+      px = py = NaN;
+      continue;
+    }
+    if (jump || px !== px) pen.moveTo((px = ax), (py = ay));
+    if (Math.max(Math.abs(left - px), Math.abs(right - px), Math.abs(top - py), Math.abs(bottom - py)) < FINE && !jump) continue;
+    pen.bezierCurveTo(bx, by, dx, dy, (px = fx), (py = fy));
   }
   pen.stroke();
 }
@@ -88,8 +102,31 @@ export function element(name, attributes, text) {
   return made;
 }
 
-/** @param {App["camera"]} camera @param {number[][]} points */
-const path = (camera, points) => points.map((p, i) => (i ? "L" : "M") + camera.toScreen(p).map((x) => x.toFixed(1)).join(" ")).join("");
+/**
+ * A polygon as the text of a path: only what is in sight, and steps shorter than a pixel as one.
+ * @param {App["camera"]} camera @param {number[][]} points
+ */
+function path(camera, points) {
+  const { width: w, height: h } = camera, last = points.length - 1;
+  let d = "", pen = "M", [px, py] = [NaN, NaN];
+  /** @type {[number, number]} */
+  let before = [0, 0];
+  for (let i = 0; i <= last; i++) {
+    const p = camera.toScreen(points[i]), [x, y] = p, [bx, by] = before;
+    before = p;
+    if (!i || Math.max(x, bx) < 0 || Math.min(x, bx) > w || Math.max(y, by) < 0 || Math.min(y, by) > h) {
+      if (i && pen === "L") d += `L${bx.toFixed(1)} ${by.toFixed(1)}`;
+      pen = "M";
+      continue;
+    }
+    if (pen === "M") d += `M${bx.toFixed(1)} ${by.toFixed(1)}`;
+    if (pen === "L" && i < last && Math.abs(x - px) < FINE && Math.abs(y - py) < FINE) continue;
+    d += `L${x.toFixed(1)} ${y.toFixed(1)}`;
+    pen = "L";
+    [px, py] = p;
+  }
+  return d;
+}
 
 /** @param {App} app */
 function marks(app) {
@@ -102,17 +139,17 @@ function marks(app) {
       made.append(element("path", { d: path(camera, round), class: chosen ? "polygon chosen" : "polygon" }));
     }
     if (!chosen) return;
-    if (app.shows("knots") && curve.pieces.length <= HANDLES)
-      for (const p of curve.pieces.slice(curve.closed ? 0 : 1)) dot(made, camera, [p[0], p[1]], 2.6, "knot");
+    if (app.shows("knots"))
+      for (const k of inSight(camera, curve.pieces)) if (k || curve.closed) dot(made, camera, curve.pieces[k], 2.6, "knot");
     if (app.shows("comb") && app.lens.comb) comb(made, app);
     if (app.shows("nodes") && app.lens.nodes)
-      for (const p of app.lens.nodes) dot(made, camera, p, 2.4, "node");
-    if (curve.points.length <= HANDLES)
-      curve.points.forEach((p, k) => {
-        dot(made, camera, p, app.vertices.has(k) ? 6 : 4.5, app.vertices.has(k) ? "vertex chosen" : "vertex");
-        const letters = app.shows("blossoms") && app.lens.blossoms?.[k];
-        if (letters) made.append(label(camera, p, letters.join(" ")));
-      });
+      for (const k of inSight(camera, app.lens.nodes)) dot(made, camera, app.lens.nodes[k], 2.4, "node");
+    for (const k of inSight(camera, curve.points)) {
+      const p = curve.points[k];
+      dot(made, camera, p, app.vertices.has(k) ? 6 : 4.5, app.vertices.has(k) ? "vertex chosen" : "vertex");
+      const letters = app.shows("blossoms") && app.lens.blossoms?.[k];
+      if (letters) made.append(label(camera, p, letters.join(" ")));
+    }
   });
   if (drawing.pending) {
     made.append(element("path", { d: path(camera, drawing.pending.chain), class: "pending" }));
@@ -123,10 +160,23 @@ function marks(app) {
   app.marks.replaceChildren(made);
 }
 
+/**
+ * Which points are in sight: their indices, or none where they are too many to be told apart.
+ * @param {App["camera"]} camera @param {number[][]} points
+ */
+function inSight(camera, points) {
+  /** @type {number[]} */
+  const seen = [];
+  for (let k = 0; k < points.length && seen.length <= HANDLES; k++) {
+    const [x, y] = camera.toScreen(points[k]);
+    if (x > -20 && y > -20 && x < camera.width + 20 && y < camera.height + 20) seen.push(k);
+  }
+  return seen.length <= HANDLES ? seen : [];
+}
+
 /** @param {DocumentFragment} into @param {App["camera"]} camera @param {number[]} p @param {number} r @param {string} kind */
 function dot(into, camera, p, r, kind) {
   const [cx, cy] = camera.toScreen(p);
-  if (cx < -20 || cy < -20 || cx > camera.width + 20 || cy > camera.height + 20) return;
   into.append(element("circle", { cx: cx.toFixed(1), cy: cy.toFixed(1), r, class: kind }));
 }
 
@@ -170,7 +220,7 @@ function boehm(into, app) {
 /** @param {DocumentFragment} into @param {App} app */
 function comb(into, app) {
   const { points, normals, curvature } = app.lens.comb;
-  const most = Math.max(...curvature.map(Math.abs), 1e-300);
+  const most = curvature.reduce((/** @type {number} */ least, /** @type {number} */ k) => Math.max(least, Math.abs(k)), 1e-300);
   const ends = points.map((/** @type {number[]} */ p, /** @type {number} */ i) => {
     const length = (70 / app.camera.scale) * (curvature[i] / most);
     return [p[0] - normals[i][0] * length, p[1] - normals[i][1] * length];

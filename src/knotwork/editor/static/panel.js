@@ -23,7 +23,7 @@ export class Panel {
     $("reduce-region").onclick = () => this.reduceRegion();
     $("table-open").onclick = () => this.table();
     for (const box of document.querySelectorAll("[data-show]")) /** @type {HTMLInputElement} */ (box).onchange = () => { app.look(); app.show(); };
-    const kinds = { svg: "SVG", json: "JSON", npz: "NPZ", csv: "CSV", py: "Python" };
+    const kinds = { svg: "SVG", json: "JSON", dxf: "DXF", npz: "NPZ", csv: "CSV", py: "Python" };
     for (const [kind, name] of Object.entries(kinds)) $("exports").append(button(name, () => this.export(kind)));
     $("exports").append(button("PNG", () => this.png()));
     if (innerWidth > 900) app.togglePanel?.();
@@ -82,7 +82,7 @@ export class Panel {
   reduceRegion() {
     const { app } = this, curve = this.curve();
     const nodes = [...app.vertices].map((i) => curve.nodes[i]);
-    app.do({ do: "reduce", curve: app.selected, tolerance: this.tolerance(), region: [Math.min(...nodes), Math.max(...nodes)] });
+    app.do({ do: "reduce", curve: app.selected, tolerance: this.tolerance(), region: [nodes.reduce((a, b) => Math.min(a, b)), nodes.reduce((a, b) => Math.max(a, b))] });
   }
 
   table() {
