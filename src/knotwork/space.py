@@ -358,6 +358,12 @@ class SplineSpace(Frozen):
         shown = ", ".join(map(str, t if len(t) <= 16 else [*t[:6], "…", *t[-6:]]))
         return f"SplineSpace({self.degree}, [{shown}]{', periodic=True' if self.periodic else ''})"
 
+    def _repr_svg_(self) -> str | None:
+        """Return what a notebook shows of a space: its basis functions over their knots."""
+        from knotwork.geometry.notebooks import basis_functions  # a room above, loaded when it is asked for
+
+        return basis_functions(self)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _restore, (type(self), self.degree, self.knots, self.periodic)
 

@@ -53,6 +53,12 @@ class Conversion(NamedTuple, Generic[S]):
     #: what was done: "oslo", "interpolation", "least-squares", …; one per parameter where they differ
     how: Any
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows of a result: the spline, and how far it is off."""
+        from knotwork.geometry.notebooks import result_card  # a room above, loaded when it is asked for
+
+        return result_card(self.spline, {"bound": self.bound, "exact": self.exact, "how": self.how})
+
 
 @overload
 def convert(spline: Spline, target: Basis, *, axis: None = None, how: How = "auto") -> Conversion[PolynomialPieces]: ...

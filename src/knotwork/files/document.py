@@ -71,6 +71,14 @@ class Document:
     #: whether what was there stays where a new text would be longer
     _shorter: bool = field(default=False, repr=False)
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows of a document: its curves, and what the file is."""
+        from knotwork.geometry.notebooks import card, overview  # loaded when it is asked for
+
+        downward = ".svg" in self.format.suffixes
+        told = {"file": self.path.name, "format": self.format.name, "splines": len(self.splines)}
+        return card(overview(self.splines, downward), told)
+
     def map(self, f: Callable[[Spline], Spline]) -> Document:
         """Return the document with splines replaced by what a function makes of them.
 

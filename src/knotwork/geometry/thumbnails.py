@@ -30,7 +30,7 @@ def thumbnail(spline: Spline) -> str | None:
         return None
     with np.errstate(all="ignore"):
         try:
-            flat = _in_the_plane(spline)
+            flat = in_the_plane(spline)
         except (OverflowError, KnotworkError):  # exact numbers that floats cannot hold or tell apart
             return None
         lines, polygon = _lines(flat), flat.points
@@ -51,12 +51,12 @@ def thumbnail(spline: Spline) -> str | None:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
         f'viewBox="0 0 {width} {height}"><title>{escape(repr(spline))}</title>'
-        f'<path d="{_path(net)}{closed}" fill="none" stroke="#a3a8ae"/><g fill="#a3a8ae">{dots}</g>'
-        f'<path d="{"".join(map(_path, curve))}" fill="none" stroke="#1f3a5f" stroke-width="1.5"/></svg>'
+        f'<path d="{path(net)}{closed}" fill="none" stroke="#a3a8ae"/><g fill="#a3a8ae">{dots}</g>'
+        f'<path d="{"".join(map(path, curve))}" fill="none" stroke="#1f3a5f" stroke-width="1.5"/></svg>'
     )
 
 
-def _in_the_plane(spline: Spline) -> Spline:
+def in_the_plane(spline: Spline) -> Spline:
     """Return a curve of the plane, in floats."""
     c = spline.homogeneous if spline.rational else spline.points.reshape(spline.space.dimension, -1)
     space, P = spline.space, c
@@ -86,10 +86,11 @@ def _lines(flat: Spline) -> list[Array]:
     nets = nets[:: max(1, len(nets) // POINTS)]
     B = np.asarray(SplineSpace.bezier(flat.space.degree, [0, 1]).basis(np.linspace(0, 1, max(2, POINTS // len(nets)))))
     found = B @ nets
-    points = found[..., :2] / found[..., 2:] if flat.rational else found
+    drawn = found[..., :2] / found[..., 2:] if flat.rational else found
     jumps = np.flatnonzero((nets[1:, 0] != nets[:-1, -1]).any(axis=1)) + 1
-    return [part.reshape(-1, 2) for part in np.split(points, jumps)]
+    return [part.reshape(-1, 2) for part in np.split(drawn, jumps)]
 
 
-def _path(line: Array) -> str:
+def path(line: Array) -> str:
+    """Return points as the data of a path."""
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in line)

@@ -53,3 +53,10 @@ class Reduction:
     heuristic_lower_bound: int | None = None
     matching: Any = None
     effort: str | None = None
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows of a result: the spline, and how far it is off."""
+        from knotwork.geometry.notebooks import result_card  # loaded when it is asked for
+
+        told = {"bound": self.bound, "distance": self.distance, "knots removed": len(self.removed) or None}
+        return result_card(self.spline, {**told, "at least": self.lower_bound, "effort": self.effort})
