@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         to_shapely,
     )
     from knotwork.building import curve, surface, volume
+    from knotwork.bulk import Summary, batch
     from knotwork.conversion import (
         Conversion,
         PolynomialPieces,
@@ -115,11 +116,13 @@ __all__ = [
     "SizeError",
     "Spline",
     "SplineSpace",
+    "Summary",
     "Unified",
     "Written",
     "Zeros",
     "area",
     "arithmetic",
+    "batch",
     "blossom",
     "by_length",
     "centroid",
@@ -191,6 +194,7 @@ _PARTS = {
         "to_scipy",
         "to_shapely",
     ),
+    "bulk": ("Summary", "batch"),
     "building": ("curve", "surface", "volume"),
     "conversion": (
         "Conversion",

@@ -56,10 +56,10 @@ def from_shapely(geometry: Any) -> list[Spline]:
         return [curve for each in geometry if each is not None for curve in from_shapely(each)]
     if kind == "Polygon":
         rings = [geometry.exterior, *geometry.interiors]
-        return [_polyline(np.asarray(ring.coords), True) for ring in rings if len(ring.coords)]
+        return [polyline(np.asarray(ring.coords), True) for ring in rings if len(ring.coords)]
     if kind in ("LineString", "LinearRing"):
         points = np.asarray(geometry.coords, np.float64)
-        return [_polyline(points, kind == "LinearRing")] if len(points) else []
+        return [polyline(points, kind == "LinearRing")] if len(points) else []
     return [curve for each in getattr(geometry, "geoms", ()) for curve in from_shapely(each)]
 
 
@@ -267,7 +267,8 @@ def to_scipy(spline: Spline) -> Any:
     return NdBSpline(tuple(space.knots for space in spline.spaces), spline.coefficients, spline.degree)
 
 
-def _polyline(points: Any, ring: bool) -> Spline:
+def polyline(points: Any, ring: bool) -> Spline:
+    """Return the curve of degree 1 through points, over their lengths; a ring is closed if it has three or more."""
     points = np.asarray(points, np.float64)
     moves = np.append(True, (points[1:] != points[:-1]).any(axis=1))
     points = points[moves]

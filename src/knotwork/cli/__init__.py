@@ -1,6 +1,7 @@
 """The command `knotwork`: a thin command for each function of the face, over files."""
 
 from knotwork.cli import (  # their commands join the program
+    bulk,
     changing,
     editing,
     fitting,
@@ -14,6 +15,7 @@ from knotwork.cli import (  # their commands join the program
 from knotwork.cli.program import main
 
 __all__ = [
+    "bulk",
     "changing",
     "editing",
     "fitting",

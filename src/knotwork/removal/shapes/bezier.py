@@ -175,8 +175,7 @@ def prepared(
         raise PointError("weights given that are not positive; expected positive ones")
     count = len(at) - 1
     closed = np.ascontiguousarray(np.broadcast_to(np.asarray(closed, bool), (count,)))
-    size = certificate.sizes(nets, rational).max(initial=0.0)
-    exponent = int(np.frexp(size)[1])
+    exponent = scaled_by(nets, rational)
     F = _scaled(nets, exponent, rational)
     unit = np.ldexp(unit, -exponent)
     hard, start = np.zeros(len(F) + count, np.int8), np.zeros(count, np.int64)
@@ -194,6 +193,11 @@ def prepared(
             _keep(hard, np.asarray(keep, np.int64), at, start, closed)
     metric, reach = (1 / unit**2 if possible else unit, 1.0) if each else (np.ones(d), float(unit[0]))
     return Curves(F, at, hard, start, unit, metric, reach, exponent, rational, each, possible)
+
+
+def scaled_by(nets: Array, rational: bool) -> int:
+    """Return by which power of two points are divided, so that none is larger than 1."""
+    return int(np.frexp(certificate.sizes(nets, rational).max(initial=0.0))[1])
 
 
 def _joined(parts: list[Array]) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,7 +14,7 @@ from knotwork.geometry.bezier import joined
 from knotwork.geometry.lengths import increasing
 from knotwork.removal.result import Reduction
 from knotwork.removal.shapes.between import Matching
-from knotwork.removal.shapes.bezier import reduce_bezier
+from knotwork.removal.shapes.bezier import Pieces, reduce_bezier, scaled_by
 from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
@@ -62,33 +63,76 @@ def reduce_shape(
     rational = curve.rational
     in_floats(np.array(curve.space.domain), "domain", ParameterError)  # what follows spreads new knots over it
     pieces, _ = nets(curve, rational)
-    closed = curve.space.periodic or (is_closed(pieces, rational) and len(pieces) > 2)
+    closed = _closed(curve, pieces)
     if form == "polyline":
         return _polyline(curve, pieces, allowed, closed, effort, keep, small)
     search = _bezier if form == "bezier" else _smooth
     return search(curve, pieces, allowed, closed, effort, keep, crossings)
 
 
+def reduce_shapes(
+    curves: Sequence[Spline], tolerance: float, *, effort: str = "normal", keep: Any = None, crossings: str = "none-new"
+) -> list[Reduction]:
+    """Return cubic pieces that join for many curves at once, each as it would be alone, bit for bit.
+
+    What makes a search for one curve slow is to prepare it; so curves are searched together that differ in nothing
+    that the search sees: dimension, degree, and by which power of two they are scaled.
+
+    Raises
+    ------
+    KnotworkError
+        If a curve is none for `reduce_shape`.
+    """
+    ready = [checked(curve) for curve in curves]
+    pieces = [nets(curve, curve.rational)[0] for curve in ready]
+    alike: dict[Any, list[int]] = defaultdict(list)
+    for i, (curve, net) in enumerate(zip(ready, pieces, strict=True)):
+        alike[curve.rational, net.shape[1:], scaled_by(net, curve.rational)].append(i)
+    found: dict[int, Reduction] = {}
+    for (rational, *_), some in alike.items():
+        closed = [_closed(ready[i], pieces[i]) for i in some]
+        at = np.concatenate([[0], np.cumsum([len(pieces[i]) for i in some])])
+        features = [_features(ready[i], pieces[i], keep) for i in some]
+        joints = np.concatenate([start + each[2] for start, each in zip(at.tolist(), features, strict=False)])
+        result = reduce_bezier(
+            np.concatenate([pieces[i] for i in some]), at, tolerance, closed=closed, angle=features[0][0],
+            lines=features[0][1], keep=joints, effort=effort, crossings=crossings, rational=rational,
+        )  # fmt: skip
+        for k, i in enumerate(some):
+            found[i] = _made(ready[i], pieces[i], result, k, tolerance, closed[k], effort)
+    return [found[i] for i in range(len(curves))]
+
+
+def _closed(curve: Spline, pieces: Array) -> bool:
+    return bool(curve.space.periodic or (is_closed(pieces, curve.rational) and len(pieces) > 2))
+
+
 def _bezier(
     curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, crossings: str
 ) -> Reduction:
     """Return cubic pieces that join."""
-    rational = curve.rational
     angle, lines, joints = _features(curve, pieces, keep)
-    each = np.ndim(allowed) == 1
     found = reduce_bezier(
         pieces, [0, len(pieces)], allowed, closed=closed, angle=angle, lines=lines, keep=joints, effort=effort,
-        crossings=crossings, rational=rational,
+        crossings=crossings, rational=curve.rational,
     )  # fmt: skip
+    return _made(curve, pieces, found, 0, allowed, closed, effort)
+
+
+def _made(curve: Spline, pieces: Array, found: Pieces, k: int, allowed: Any, closed: bool, effort: str) -> Reduction:
+    """Return what was found for curve k as a reduction."""
+    rational, each = curve.rational, np.ndim(allowed) == 1
     floor = _lower_bound(pieces, allowed, closed, rational, 3)
     low = 3 * floor + (not closed)
-    if not len(found.nets):
+    own = found.nets[found.at[k] : found.at[k + 1]]
+    if not len(own):
         return _itself(curve, effort, low, each)
-    new = found.nets[..., :-1] / found.nets[..., -1:] if rational else found.nets
+    new = own[..., :-1] / own[..., -1:] if rational else own
     t = breaks_by_length(new, curve.space.domain, closed)
     spline = joined(new, t, closed and curve.space.periodic)
-    matching = Matching(found.s + found.start[0], found.u, closed)
-    bound = float(found.bound[0]) if not each else found.bound[0] * np.asarray(allowed)
+    path = slice(found.path[k], found.path[k + 1])
+    matching = Matching(found.s[path] + found.start[k], found.u[path], closed)
+    bound = float(found.bound[k]) if not each else found.bound[k] * np.asarray(allowed)
     return Reduction(spline, bound, "geometric", (), low, None, matching, effort)
 
 
