@@ -298,6 +298,7 @@ def test_plain_and_compiled_agree_on_geometry(both):
     kw.zeros(kw.curve([1.0, -1, 0, -1, 1], 2, [0, 0, 0, 1, 1, 2, 2, 2]))
     kw.frame(kw.curve(rng.standard_normal((5, 3))), [0.0, 0.5])
     kw.flatten(kw.curve(rng.standard_normal((5, 3))), 0.1)
+    kw.flatten(kw.surface(rng.standard_normal((5, 5, 3))), 0.5)
     kw.closest(kw.curve(rng.standard_normal((12, 3))), rng.standard_normal((20, 3)))
 
 

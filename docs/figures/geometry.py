@@ -1,10 +1,45 @@
-"""Make the picture of geometry.md: python docs/figures/geometry.py."""
+"""Make the pictures of geometry.md: python docs/figures/geometry.py."""
+
+import math
 
 import numpy as np
 from common import plt, save
 
 import knotwork as kw
+from knotwork.geometry import analytic
 from knotwork.plotting import INK, KNOT, NET
+
+
+def vase():
+    """Return a turned profile: bent below, nearly straight above."""
+    profile = kw.curve([[0.0, 0, 0], [1.6, 0, 0], [1.7, 0, 1.2], [0.3, 0, 1.8], [0.5, 0, 3], [0.8, 0, 4.2]])
+    return analytic.revolution(profile, [0, 0, 0], [0, 0, 1])
+
+
+def mesh():
+    """Draw the triangles of a vase, in space and in the parameters; print how many surfaces take."""
+    frame, turn = analytic.Frame.at([0, 0, 0]), [0, 2 * math.pi]
+    ball = analytic.torus(frame, 0, 1, turn, [-math.pi / 2, math.pi / 2])
+    surfaces = {"sphere": ball, "torus": analytic.torus(frame, 3, 1, turn, turn)}
+    surfaces |= {"cylinder": analytic.cone(frame, 1, 0, turn, [0, 5]), "vase": vase()}
+    for name, surface in surfaces.items():
+        found = kw.flatten(surface, 0.01)
+        print(f"{name}: {len(found.triangles):,} triangles, {found.uniform:,} by even steps")
+    found = kw.flatten(vase(), 0.03)
+    print(f"drawn: {len(found.triangles):,}")
+    figure = plt.figure(figsize=(9, 4.2), layout="constrained")
+    space = figure.add_subplot(1, 2, 1, projection="3d")
+    x, y, z = found.points.T
+    space.plot_trisurf(x, y, found.triangles, z, color="#dfe5ee", edgecolor=INK, linewidth=0.25)
+    space.set_aspect("equal")
+    space.set_axis_off()
+    space.view_init(18, -60)
+    plane = figure.add_subplot(1, 2, 2)
+    u = found.parameters[found.triangles]
+    u = u[(np.ptp(u[:, :, 0], axis=1) < 3) & (u[:, :, 1] > 0).all(axis=1)]  # neither across the seam nor at the pole
+    plane.triplot(*u.reshape(-1, 2).T, np.arange(3 * len(u)).reshape(-1, 3), color=INK, lw=0.4)
+    plane.set(xlabel="angle", ylabel="along the profile")
+    save(figure, "mesh.png", dpi=130)
 
 
 def main():
@@ -30,3 +65,4 @@ def main():
 
 if __name__ == "__main__":
     main()
+    mesh()

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from knotwork.geometry import (
         Closest,
         Measured,
+        Mesh,
         Polyline,
         Zeros,
         area,
@@ -106,6 +107,7 @@ __all__ = [
     "KnotworkError",
     "Matching",
     "Measured",
+    "Mesh",
     "MissingExtraError",
     "ParameterError",
     "PointError",
@@ -224,6 +226,7 @@ _PARTS = {
     "geometry": (
         "Closest",
         "Measured",
+        "Mesh",
         "Polyline",
         "Zeros",
         "area",

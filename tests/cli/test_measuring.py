@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 import knotwork as kw
 from knotwork.cli import main
+from knotwork.geometry import analytic
 
 
 @pytest.fixture
@@ -34,6 +37,22 @@ def test_flatten(run):
     assert told["bound"] <= 0.01
     assert kw.distance(lines, kw.read("arch.json")[0]).hausdorff.low <= 0.01
     assert "vertices written" in run("flatten", "arch.json", "-t", "1%", "-o", "lines.csv").stdout
+
+
+def test_flatten_surfaces(run):
+    ball = analytic.torus(analytic.Frame.at([0, 0, 0]), 0, 1, [0, 2 * math.pi], [-math.pi / 2, math.pi / 2])
+    kw.write("ball.igs", [ball, kw.curve([[0.0, 0, 0], [1, 1, 1]], 1)])
+    for name in ("ball.stl", "ball.ply", "ball.obj"):
+        done = run("flatten", "ball.igs", "-t", "1%", "-o", name, "--json")
+        told = json.loads(done.stdout)
+        assert told["bound"] <= 0.02
+        assert told["triangles"][0] < told["uniform"]
+        assert "1 curve left out" in done.stderr
+    assert int.from_bytes(Path("ball.stl").read_bytes()[80:84], "little") == told["triangles"][0]
+    assert "triangles written to ball.stl, within" in run("flatten", "ball.igs", "-o", "ball.stl").stdout
+    assert ".stl" in run("flatten", "ball.igs", "-o", "ball.json", code=1).stderr
+    assert "no surface" in run("flatten", "arch.json", "-o", "arch.stl", code=1).stderr
+    assert "unknown suffix" in run("reduce", "arch.json", "-t", "1", "-o", "arch.stl", code=1).stderr
 
 
 def test_sample(run):

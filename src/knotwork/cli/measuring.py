@@ -14,32 +14,53 @@ from knotwork.cli.program import FILE, as_json, main, output, print_json, requir
 from knotwork.cli.terminal import Failure, Tolerance
 
 
-@main.command(short_help="Polylines within a tolerance of curves.")
+@main.command(short_help="Polylines, or triangles, within a tolerance.")
 @click.argument("file", type=FILE)
-@click.option(
-    "-t", "--tolerance", type=terminal.tolerance, required=True, help="Largest distance: a length, or as in 0.1%."
-)
+@click.option("-t", "--tolerance", type=terminal.tolerance, default="0.1%", help="Largest distance.  [default: 0.1%]")
 @output
 @as_json
 def flatten(file: Path, tolerance: Tolerance, output: Path, as_json: bool) -> None:
-    """Write the curves of FILE as polylines of few vertices, each within the tolerance.
+    """Write the curves of FILE as polylines of few vertices, or its surfaces as triangles, within the tolerance.
+
+    Triangles go to .stl, .ply and .obj files. Surfaces are not trimmed; curves beside them are left out.
 
     \b
-    Example:
+    Examples:
       knotwork flatten curve.json -t 0.01 -o lines.csv
+      knotwork flatten surface.igs -o surface.stl
     """
-    require_writable(output)
+    from knotwork.files import SUFFIXES
+
+    kind = SUFFIXES.get(output.suffix.lower())
+    require_writable(output, [s for s, each in SUFFIXES.items() if each.writes])
     splines = kw.read(file)
-    found = [kw.flatten(s, tolerance.of(splines)) for s in splines]
-    lines = [kw.Spline(_polyline(f.parameters), f.points) for f in found]
-    kw.write(output, lines)
-    bound = max((f.bound for f in found), default=0.0)
-    count, even = sum(len(f.points) for f in found), sum(f.uniform for f in found)
+    surfaces = [s for s in splines if s.parameters > 1]
+    meshed = bool(kind and kind.triangles and (surfaces or not kind.reads))
+    if meshed and not surfaces:
+        raise Failure(f"{file}: has no surface; expected one or more for {output}")
+    if surfaces and not meshed:
+        known = ", ".join(suffix for suffix, each in SUFFIXES.items() if each.triangles)
+        raise Failure(f"{file}: has surfaces, which become triangles; expected an output of {known}")
+    chosen = surfaces if meshed else splines
+    if len(chosen) < len(splines):
+        told = report.counted(len(splines) - len(chosen), "curve")
+        click.echo(f"knotwork: note: {file}: {told} left out, beside surfaces", err=True)
+    found = [kw.flatten(s, tolerance.of(chosen)) for s in chosen]
+    meshes = [f for f in found if isinstance(f, kw.Mesh)]
+    rounded = kw.write(output, meshes or [kw.Spline(_polyline(f.parameters), f.points) for f in found]).bound
+    bound = max((f.bound for f in found), default=0.0) + rounded
+    even, vertices = sum(f.uniform for f in found), [len(f.points) for f in found]
+    triangles = [len(f.triangles) for f in meshes]
     if as_json:
-        print_json({"output": str(output), "vertices": [len(f.points) for f in found], "uniform": even, "bound": bound})
+        parts = {"vertices": vertices, **({"triangles": triangles} if meshes else {})}
+        print_json({"output": str(output), **parts, "uniform": even, "bound": bound})
     else:
-        told = f"{report.counted(count, 'vertex', 'vertices')} written to {output}"
-        click.echo(f"{told}, within {bound:.3g}; even steps would take {even:,}")
+        count = report.counted(sum(triangles), "triangle") if meshes else _vertices(sum(vertices))
+        click.echo(f"{count} written to {output}, within {bound:.3g}; even steps would take {even:,}")
+
+
+def _vertices(count: int) -> str:
+    return report.counted(count, "vertex", "vertices")
 
 
 @main.command(short_help="Points of curves, as CSV.")

@@ -47,7 +47,7 @@ def require_writable(output: Path, suffixes: Sequence[str] = ()) -> None:
     """Raise before the work if a file of this name could not be written after it."""
     from knotwork.files import SUFFIXES
 
-    known = suffixes or [suffix for suffix, each in SUFFIXES.items() if each.writes]
+    known = suffixes or [suffix for suffix, each in SUFFIXES.items() if each.writes and each.reads]
     if output.suffix.lower() not in known:
         raise Failure(f"{output}: unknown suffix {output.suffix!r}; expected one of {', '.join(known)}")
     if output.is_dir():

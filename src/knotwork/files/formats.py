@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from knotwork.errors import FileError, KnotworkError, ParameterError, nearest_name
 from knotwork.files.storage import fetch, packed, replace, unpacked
+from knotwork.geometry.meshing import Mesh
 from knotwork.spline import Spline
 
 
@@ -34,6 +35,8 @@ class Format(NamedTuple):
     needs: str = ""
     #: whether its curves carry no parametrisation, so that shapes are what is compared
     shapes: bool = False
+    #: whether it holds meshes of triangles
+    triangles: bool = False
 
     @property
     def codec(self) -> ModuleType:
@@ -62,7 +65,14 @@ FORMATS = (
         "gpx", "GPX track", (".gpx",), "tracks and routes, in place", "curves of degree 1", ("extras",), shapes=True
     ),
     Format("cad.sisl", "SISL and GoTools", (".g2",), "curves and surfaces", "the same, exactly"),
-    Format("cad.wavefront", "Wavefront free form", (".obj",), "curves and surfaces", "curves and surfaces"),
+    Format(
+        "cad.wavefront",
+        "Wavefront free form",
+        (".obj",),
+        "curves and surfaces",
+        "the same, or triangles",
+        triangles=True,
+    ),
     Format("cad.iges", "IGES", (".igs", ".iges"), "curves and surfaces, B-splines in place", "curves and surfaces"),
     Format(
         "cad.dxf",
@@ -83,6 +93,8 @@ FORMATS = (
         shapes=True,
     ),
     Format("cad.step", "STEP", (".stp", ".step"), "curves and surfaces, B-splines in place", "curves and surfaces"),
+    Format("meshes.stl", "STL mesh", (".stl",), "", "triangles", triangles=True),
+    Format("meshes.ply", "PLY mesh", (".ply",), "", "triangles", triangles=True),
 )
 SUFFIXES = {suffix: each for each in FORMATS for suffix in each.suffixes}
 #: where files of other suffixes can come from
@@ -117,7 +129,7 @@ class Written:
         How many splines are in it.
     bound : float
         No point of the written geometry is farther than this from its spline, the rounding of floats apart; 0.0 if
-        the format holds it exactly.
+        the format holds it exactly. Of a mesh: no vertex is moved farther.
 
     Examples
     --------
@@ -199,7 +211,10 @@ def decoded(data: bytes, path: Path, format: str | None, options: Mapping[str, A
 
 
 def write(
-    path: str | os.PathLike[str], splines: Spline | Sequence[Spline], *, accuracy: float | None = None
+    path: str | os.PathLike[str],
+    splines: Spline | Mesh | Sequence[Spline] | Sequence[Mesh],
+    *,
+    accuracy: float | None = None,
 ) -> Written:
     """Write splines to a file, whole or not at all: an older file is replaced only when the new one is complete.
 
@@ -207,7 +222,8 @@ def write(
     ----------
     path : path-like
         The suffix tells the format, as for `read`.
-    splines : Spline or sequence of Spline
+    splines : Spline or Mesh, or a sequence of either
+        Meshes, which `flatten` makes of surfaces, go to ``.stl``, ``.ply`` and ``.obj``.
     accuracy : float, optional
         How far, in the units of the points, a written curve may be from its spline where the format cannot hold it:
         curves above degree 3 and rational curves in ``.svg``. By default 1e-5 of the extent of the drawing.
@@ -234,31 +250,50 @@ def write(
     if not isinstance(path, str | os.PathLike):
         raise ParameterError(f"{type(path).__name__} given as the path; expected write(path, splines)")
     path = Path(path)
-    splines = [splines] if isinstance(splines, Spline) else list(splines)
-    data, bound = encoded(splines, path, None, accuracy)
+    given: list[Any] = [splines] if isinstance(splines, Spline | Mesh) else list(splines)
+    data, bound = encoded(given, path, None, accuracy)
     replace(path, data)
-    return Written(path, len(splines), bound)
+    return Written(path, len(given), bound)
 
 
 def encoded(
-    splines: Sequence[Spline], path: Path, format: str | None = None, accuracy: float | None = None
+    splines: Sequence[Spline] | Sequence[Mesh], path: Path, format: str | None = None, accuracy: float | None = None
 ) -> tuple[bytes, float]:
     """Return the bytes of a file that holds splines, and the bound of the error."""
     found = format_of(path, format)
     if not splines:
         raise ParameterError(f"{path}: no splines given; expected one or more")
+    if any(isinstance(each, Mesh) for each in splines):
+        return _meshes(splines, path, found)
     for i, spline in enumerate(splines):
         if not isinstance(spline, Spline):
             raise ParameterError(f"{path}: splines[{i}] is a {type(spline).__name__}; expected a Spline")
     if accuracy is not None and not (accuracy > 0 and math.isfinite(accuracy)):
         raise ParameterError(f"accuracy {accuracy} given; expected a finite number above 0")
     if not hasattr(found.codec, "encode"):
-        raise FileError(f"{path}: a {found.name} is read, not written")
+        way = (
+            "holds triangles: kw.flatten(surface, tolerance) makes them" if found.triangles else "is read, not written"
+        )
+        raise FileError(f"{path}: a {found.name} {way}")
     try:
         data, bound = found.codec.encode(list(splines), accuracy)
     except KnotworkError as exc:
         raise FileError(f"{path}: {exc}") from exc
     return packed(data, path), bound
+
+
+def _meshes(meshes: Sequence[Any], path: Path, found: Format) -> tuple[bytes, float]:
+    """Return the bytes of a file that holds meshes, and how far a vertex is moved at most."""
+    if not all(isinstance(mesh, Mesh) for mesh in meshes):
+        raise ParameterError(f"{path}: meshes and others given; expected either splines or meshes")
+    if not found.triangles:
+        known = ", ".join(suffix for suffix, each in SUFFIXES.items() if each.triangles)
+        raise FileError(f"{path}: a {found.name} holds no triangles; expected one of {known}")
+    try:
+        data, bound = found.codec.encode_meshes(meshes)
+    except KnotworkError as exc:
+        raise FileError(f"{path}: {exc}") from exc
+    return data, bound
 
 
 def format_of(path: Path, format: str | None = None, data: bytes | None = None) -> Format:
@@ -294,7 +329,9 @@ def _by_content(data: bytes) -> Format | None:
 
 
 def require_options(found: Format, path: Path, options: Mapping[str, Any]) -> None:
-    """Raise unless a format can be asked for these options."""
+    """Raise unless a format is read, and can be asked for these options."""
+    if not found.reads:
+        raise FileError(f"{path}: a {found.name} is written, not read")
     for name in options:
         if name not in found.options:
             known = f"it takes {', '.join(found.options)}" if found.options else "it takes none"

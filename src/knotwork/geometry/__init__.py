@@ -1,8 +1,10 @@
 """What knot insertion tells of a curve or a surface: boxes, zeros, lengths; all certified by control points."""
 
-from knotwork.geometry.chords import Polyline, flatten
+from knotwork.geometry.chords import Polyline
+from knotwork.geometry.flattening import flatten
 from knotwork.geometry.local_shape import curvature, frame, normals
 from knotwork.geometry.measures import Measured, area, by_length, centroid, length
+from knotwork.geometry.meshing import Mesh
 from knotwork.geometry.nearest import Closest, closest
 from knotwork.geometry.roots import Zeros, zeros
 from knotwork.geometry.turning import corners, extrema, inflections
@@ -10,6 +12,7 @@ from knotwork.geometry.turning import corners, extrema, inflections
 __all__ = [
     "Closest",
     "Measured",
+    "Mesh",
     "Polyline",
     "Zeros",
     "area",

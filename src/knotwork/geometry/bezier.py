@@ -37,14 +37,22 @@ def product(p: Array, q: Array) -> Array:
     return result
 
 
-def halves(nets: Array, axis: int = 1) -> tuple[Array, Array]:
-    """Return the two halves of Bézier curves, or of surfaces across the parameter of an axis (de Casteljau)."""
+def halves(nets: Array, axis: int = 1, at: Any = None) -> tuple[Array, Array]:
+    """Return both parts of Bézier curves, or of surfaces across the parameter of an axis (de Casteljau).
+
+    They are halves, unless `at` tells for each net where it is parted, from 0 to 1.
+    """
     nets = nets.swapaxes(1, axis)
     left, right = np.empty_like(nets), np.empty_like(nets)
     count = nets.shape[1]
+    if at is not None:
+        at = np.reshape(at, (-1, *[1] * (nets.ndim - 1)))
     for k in range(count):
         left[:, k], right[:, count - 1 - k] = nets[:, 0], nets[:, -1]
-        nets = nets[:, :-1] / 2 + nets[:, 1:] / 2
+        if at is None:
+            nets = nets[:, :-1] / 2 + nets[:, 1:] / 2
+        else:
+            nets = (1 - at) * nets[:, :-1] + at * nets[:, 1:]
     return left.swapaxes(1, axis), right.swapaxes(1, axis)
 
 

@@ -45,35 +45,8 @@ class Polyline(NamedTuple):
     uniform: int
 
 
-def flatten(curve: Spline, tolerance: float) -> Polyline:
-    """Return a polyline within a tolerance of a curve, with few vertices.
-
-    Parameters
-    ----------
-    curve : Spline
-        Real, of one parameter, in any dimension.
-    tolerance : float
-        Above 0, in the units of the points.
-
-    Returns
-    -------
-    Polyline
-        ``points`` on the curve (a rounding off), their ``parameters``, and ``bound``, at most the tolerance: the
-        Hausdorff distance, of each chord and its part of the curve, is no larger. Ends and jumps are vertices.
-
-    Raises
-    ------
-    ParameterError
-        If the tolerance is not above 0, or so small that rounding is larger.
-
-    Examples
-    --------
-    >>> import knotwork as kw
-    >>> c = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
-    >>> few = kw.flatten(c, 0.01)
-    >>> len(few.points), few.uniform, few.bound <= 0.01
-    (14, 14, True)
-    """
+def polyline(curve: Spline, tolerance: float) -> Polyline:
+    """Return a polyline within a tolerance of a curve: what `flatten` does for curves."""
     require_curve(curve)
     size = real_numbers(tolerance, "tolerance", ParameterError)
     if size.shape != () or not size > 0:

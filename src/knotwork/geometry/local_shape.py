@@ -87,7 +87,7 @@ def normals(surface: Spline, u: Any, v: Any, grid: bool = False) -> Array:
     >>> (kw.normals(cone, [0.0, 0.5], 0.5) + 0.0).tolist()
     [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]
     """
-    _require_surface(surface)
+    require_surface(surface)
     x, y = (real_numbers(w, "parameters", ParameterError).astype(np.float64) for w in (u, v))
     if grid:
         x, y = x[:, None], y[None, :]
@@ -195,7 +195,8 @@ def _tangents(curve: Spline, u: Array) -> tuple[Array, Array]:
     return D[0], T / np.where(size > 0, size, np.nan)[:, None]
 
 
-def _require_surface(surface: Any) -> None:
+def require_surface(surface: Any) -> None:
+    """Raise unless a real surface in space was given."""
     if not isinstance(surface, Spline) or len(surface.spaces) != 2 or surface.dim != 3:
         raise ParameterError(f"{surface!r} given; expected a surface in space, a Spline of two parameters in 3-D")
     if surface.coefficients.dtype.kind == "c":
@@ -246,7 +247,7 @@ def _limits(surface: Spline, x: Array, y: Array) -> Array:
 
 def _principal(surface: Spline, u: tuple[Any, ...]) -> Array:
     """Return the principal curvatures, the larger first."""
-    _require_surface(surface)
+    require_surface(surface)
     if len(u) != 2:
         raise ParameterError(f"{len(u)} parameters given; this spline has 2")
     x, y = np.broadcast_arrays(*(real_numbers(w, "parameters", ParameterError).astype(np.float64) for w in u))

@@ -1,14 +1,15 @@
-"""The free forms of Wavefront's .obj files: curves and surfaces of `cstype bspline`, `rat bspline` and `bezier`."""
+"""Wavefront's .obj files: free forms of `cstype bspline`, `rat bspline` and `bezier`; triangles are written only."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, KnotworkError
 from knotwork.files.cad.shapes import Remarks, in_space, plain, spline_of
+from knotwork.geometry.meshing import Mesh
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -140,4 +141,18 @@ def encode(splines: list[Spline], accuracy: float | None) -> tuple[bytes, float]
             lines += [f"parm {name} " + " ".join(map(repr, space.knots.tolist()))]
         lines += ["end"]
         count += len(flat)
+    return "\n".join([*lines, ""]).encode(), 0.0
+
+
+def encode_meshes(meshes: Sequence[Mesh]) -> tuple[bytes, float]:
+    """Return a file of triangles, each vertex with its normal; the numbers read back as they are."""
+    lines, count = [], 0
+    for i, mesh in enumerate(meshes):
+        lines += [f"o surface{i}"]
+        lines += ["v " + " ".join(map(repr, row)) for row in mesh.points.tolist()]
+        lines += ["vn " + " ".join(map(repr, row)) for row in mesh.normals.tolist()]
+        lines += [
+            "f " + " ".join(f"{k}//{k}" for k in row) for row in (np.asarray(mesh.triangles) + count + 1).tolist()
+        ]
+        count += len(mesh.points)
     return "\n".join([*lines, ""]).encode(), 0.0

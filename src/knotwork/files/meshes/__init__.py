@@ -1,0 +1,1 @@
+"""Files of triangles, one module a format: what `flatten` makes of surfaces."""
