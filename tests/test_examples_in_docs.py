@@ -47,7 +47,7 @@ def test_the_examples_of_a_docstring(test, tmp_path, monkeypatch):
 
 PARTS = ("arithmetic", "diagrams", "insertion", "progressive", "stability")
 #: values, not functions or classes
-NUMBERS = {"__version__", "DELTA", "METHODS", "FIGURES", "SCHEMES"}
+NUMBERS = {"__version__", "DELTA", "METHODS", "ANIMATIONS", "FIGURES", "SCHEMES"}
 #: what other rooms of the house call
 INNER = [
     "axis",

@@ -145,7 +145,7 @@ class Diagram:
                 "font-family=\"'STIX Two Text', 'Times New Roman', 'Liberation Serif', serif\">",
                 f"<title>{escape(self.title)}</title>",
                 '<rect width="100%" height="100%" fill="#ffffff"/>',
-                *self._svg_shapes(frame),
+                *self.shapes(frame),
                 "</svg>\n",
             ]
         )
@@ -153,7 +153,9 @@ class Diagram:
     def _repr_svg_(self) -> str:
         return self.svg()
 
-    def _svg_shapes(self, frame: Box) -> Iterator[str]:
+    def shapes(self, frame: Box) -> Iterator[str]:
+        """Yield the elements of the SVG: lines, arrows, labels, nodes; the frame's upper left corner is the origin."""
+
         def at(x: float, y: float) -> str:
             return f"{SIZE * (x - frame.left):.1f} {SIZE * (frame.top - y):.1f}"
 
