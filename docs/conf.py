@@ -62,9 +62,15 @@ def plain_bars(app: object, what: str, name: str, thing: object, options: object
     lines[:] = [re.sub(r"\|(\w+)\|", r"\\|\1\\|", line) for line in lines]
 
 
+def plain_stars(app: object, context: object, lines: list[str]) -> None:
+    """Keep the stars of patterns of files from being read as emphasis."""
+    lines[:] = [line.replace("*", r"\*") for line in lines]
+
+
 def setup(app: Any) -> None:
     """Write the two pages that are made from the code, before anything is read."""
     app.connect("autodoc-process-docstring", plain_bars)
+    app.connect("sphinx-click-process-description", plain_stars)
     folder = HERE / "made"
     folder.mkdir(exist_ok=True)
     for name, text in (("names.md", names_by_task()), ("commands.md", COMMANDS)):
