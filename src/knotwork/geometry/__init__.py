@@ -1,7 +1,10 @@
 """What knot insertion tells of a curve or a surface: boxes, zeros, lengths; all certified by control points."""
 
 from knotwork.geometry.chords import Polyline
+from knotwork.geometry.crossings import intersect
 from knotwork.geometry.flattening import flatten
+from knotwork.geometry.gathering import Crossings
+from knotwork.geometry.lines import Line, Plane
 from knotwork.geometry.local_shape import curvature, frame, normals
 from knotwork.geometry.measures import Measured, area, by_length, centroid, length
 from knotwork.geometry.meshing import Mesh
@@ -11,8 +14,11 @@ from knotwork.geometry.turning import corners, extrema, inflections
 
 __all__ = [
     "Closest",
+    "Crossings",
+    "Line",
     "Measured",
     "Mesh",
+    "Plane",
     "Polyline",
     "Zeros",
     "area",
@@ -25,6 +31,7 @@ __all__ = [
     "flatten",
     "frame",
     "inflections",
+    "intersect",
     "length",
     "normals",
     "zeros",

@@ -40,19 +40,30 @@ def roots(c: Sequence[Fraction], width: Fraction) -> list[Root]:
     >>> roots([Fraction(1), Fraction(-1), Fraction(1)], Fraction(1))[0].multiplicity
     2
     """
+    return roots_of(monomial(c), width)
+
+
+def roots_of(p: Polynomial, width: Fraction) -> list[Root]:
+    """Return the zeros in [0, 1] of a polynomial of whole numbers, in the same way."""
     found = []
-    for factor, multiplicity in factors(monomial(c)):
+    for factor, multiplicity in factors(p):
         for low, high in _isolated(factor, width):
             found.append(Root(low, high, multiplicity))
     return sorted(found)
 
 
-def monomial(c: Sequence[Fraction]) -> Polynomial:
-    """Return a positive multiple of a polynomial with these Bernstein coefficients: a_k = C(n, k) Δᵏ c_0."""
+def powers(c: Sequence[Fraction]) -> list[Fraction]:
+    """Return the coefficients of 1, x, x², … of a polynomial with these Bernstein coefficients: C(n, k) Δᵏ c_0."""
     rest, n, a = list(c), len(c) - 1, []
     for k in range(n + 1):
         a.append(math.comb(n, k) * rest[0])
         rest = [y - x for x, y in itertools.pairwise(rest)]
+    return a
+
+
+def monomial(c: Sequence[Fraction]) -> Polynomial:
+    """Return a positive multiple of a polynomial with these Bernstein coefficients, of whole numbers."""
+    a = powers(c)
     below = math.lcm(*(x.denominator for x in a))
     return _primitive([x.numerator * (below // x.denominator) for x in a])
 
@@ -62,18 +73,18 @@ def factors(p: Polynomial) -> Iterator[tuple[Polynomial, int]]:
     if len(p) < 2:
         return
     slope = _derivative(p)
-    common = _divisor(p, slope)
+    common = divisor(p, slope)
     if len(common) == 1:
         yield p, 1
         return
-    a, b = _quotient(p, common), _quotient(slope, common)
+    a, b = quotient(p, common), quotient(slope, common)
     multiplicity = 1
     while len(a) > 1:
         rest = _difference(b, _derivative(a))
-        factor = _divisor(a, rest) if rest else _primitive(a)
+        factor = divisor(a, rest) if rest else _primitive(a)
         if len(factor) > 1:
             yield factor, multiplicity
-        a, b = _quotient(a, factor), _quotient(rest, factor) if rest else []
+        a, b = quotient(a, factor), quotient(rest, factor) if rest else []
         multiplicity += 1
 
 
@@ -153,7 +164,8 @@ def _derivative(p: Polynomial) -> Polynomial:
     return [k * a for k, a in enumerate(p)][1:]
 
 
-def _trimmed(p: Polynomial) -> Polynomial:
+def trimmed(p: Polynomial) -> Polynomial:
+    """Return p without zeros at its end, which go from the list that is given."""
     while p and not p[-1]:
         p.pop()
     return p
@@ -161,21 +173,21 @@ def _trimmed(p: Polynomial) -> Polynomial:
 
 def _primitive(p: Polynomial) -> Polynomial:
     """Return p divided by the greatest common divisor of its coefficients."""
-    p = _trimmed(p)
+    p = trimmed(p)
     common = math.gcd(*p)
     return [a // common for a in p] if common > 1 else p
 
 
 def _difference(p: Polynomial, q: Polynomial) -> Polynomial:
     length = max(len(p), len(q))
-    return _trimmed([x - y for x, y in zip(_padded(p, length), _padded(q, length), strict=True)])
+    return trimmed([x - y for x, y in zip(_padded(p, length), _padded(q, length), strict=True)])
 
 
 def _padded(p: Polynomial, length: int) -> Polynomial:
     return [*p, *[0] * (length - len(p))]
 
 
-def _divisor(p: Polynomial, q: Polynomial) -> Polynomial:
+def divisor(p: Polynomial, q: Polynomial) -> Polynomial:
     """Return the greatest common divisor, primitive, by pseudo-remainders."""
     p, q = _primitive(p[:]), _primitive(q[:])
     while q:
@@ -185,12 +197,12 @@ def _divisor(p: Polynomial, q: Polynomial) -> Polynomial:
             rest = [q[-1] * a for a in rest]
             for i, b in enumerate(q):
                 rest[i + shift] -= top * b
-            _trimmed(rest)
+            trimmed(rest)
         p, q = q, _primitive(rest) if rest else []
     return p
 
 
-def _quotient(p: Polynomial, q: Polynomial) -> Polynomial:
+def quotient(p: Polynomial, q: Polynomial) -> Polynomial:
     """Return p / q, which is a polynomial over whole numbers as q is primitive (Gauss)."""
     rest, result = p[:], [0] * (len(p) - len(q) + 1)
     for shift in range(len(p) - len(q), -1, -1):
