@@ -179,6 +179,12 @@ def test_the_seam_of_a_period_counts_once():
     assert len(kw.zeros(wave).low) == 4
 
 
+def test_no_zero_is_before_a_seam_with_a_jump():
+    f = kw.Spline(kw.SplineSpace(2, [0, 0, 0, 1, 4, 5], periodic=True), [-1.5, 4.5, -9.5, 5.5, -5.5])
+    require_all(f, kw.zeros(f))
+    assert kw.zeros(f).change.tolist() == [1, -1, 1, -1]
+
+
 def test_near_misses_are_told_apart():
     for miss, count in ((0.0, 1), (2.0**-50, 0), (-(2.0**-50), 2)):
         f = kw.curve([0.25 + miss, -0.25 + miss, 0.25 + miss], 2)  # (u − 1/2)² + miss

@@ -164,10 +164,12 @@ def _known(f: Spline, order: int) -> Function:
         space, c = of_coefficients(space, c, 0)
         if not exact:
             e = e * (1 + 8 * UNIT) + 4 * UNIT * np.abs(c)
-    opened = Function(space.knots, c[:, 0], e[:, 0], extent(space.degree))
-    a, b = space.domain
-    missing = [space.order - space.multiplicity(x) for x in (a, b)]
-    return opened if exact or not any(missing) else _with_knots(opened, np.repeat([a, b], missing), clamp=True)
+    t, n = space.knots, space.degree
+    opened = Function(t, c[:, 0], e[:, 0], extent(n))
+    if exact or (t[0] == t[n] and t[-1] == t[-n - 1]):
+        return opened
+    missing = [space.order - space.multiplicity(x) for x in space.domain]
+    return _with_knots(opened, np.repeat(space.domain, missing), clamp=True)
 
 
 def _with_knots(f: Function, new: Array, clamp: bool = False) -> Function:
