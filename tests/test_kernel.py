@@ -25,6 +25,7 @@ from knotwork.arithmetic import kernel as kernels
 from knotwork.arithmetic.kernel import Kernel
 from knotwork.conversion.oslo import conversion_matrix, converted
 from knotwork.insertion.methods import forms, perspectives
+from knotwork.removal.outlines import outlined
 from knotwork.removal.shapes.bezier import reduce_bezier
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.polyline import reduce_polyline
@@ -286,6 +287,10 @@ def test_plain_and_compiled_agree_on_shapes(both):
     reduce_bezier(np.stack([wild[:-1], wild[1:]], axis=1), [0, 11], 2.0)  # one that needs repair
     around = {"closed": True, "periodic": True, "angle": None, "lines": False, "keep": (), "rational": False}
     reduce_smooth(edges, 0.5, effort="fast", crossings="none-new", **around)
+    bent = np.array([[0, 0], [0, 55], [45, 100], [100, 100], [155, 100], [200, 55], [200, 0], [190, -160], [10, -170]])
+    ring = [bent[[0, 1, 2, 3]], bent[[3, 4, 5, 6]], bent[[6, 7, 8, 0]]]
+    for into in (True, False):
+        outlined([each.astype(float) for each in ring], 0.75, cubic=True, into=into)
 
 
 @battery

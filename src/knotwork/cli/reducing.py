@@ -33,7 +33,9 @@ IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 @click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="At equal parameters, or of shapes.")
 @click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), help="What shapes become.")
 @click.option("--effort", type=click.Choice(["fast", "normal", "best"]), default="normal", help="[default: normal]")
-@click.option("--keep", type=click.Choice(["corners", "lines"]), multiple=True, help="What stays; repeatable.")
+@click.option(
+    "--keep", metavar="FEATURES", type=terminal.features, multiple=True, help="What stays, as in corners,lines,extrema."
+)
 @click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
 @click.option("--precision", type=click.IntRange(-6, 17), help="Digits after the point in a drawing.")
 @click.option("--shared-borders", is_flag=True, help="Borders that areas of a map share stay shared.")
@@ -45,7 +47,7 @@ def reduce(
     distance: str | None,
     form: str | None,
     effort: str,
-    keep: Sequence[str],
+    keep: Sequence[Sequence[str]],
     even_if_longer: bool,
     precision: int | None,
     shared_borders: bool,
@@ -53,24 +55,33 @@ def reduce(
 ) -> None:
     """Find splines with few knots within a tolerance of those of FILE.
 
-    The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file.
-    The bound in the report is proven. Drawings and tables carry no parametrisation: their shapes are compared unless
-    --distance or --degree say otherwise. An SVG drawing comes back as it was but for its paths, which get few segments
-    and the shortest text; a map or a track as it was but for the points of its lines; a table stays a table of fewer
-    points. Other files are compared at equal parameters.
+    The tolerance is a length in the units of the points, or a percentage of the extent of all splines in the file (of
+    a font, of the em). The bound in the report is proven. Drawings and tables carry no parametrisation: their shapes
+    are compared unless --distance or --degree say otherwise. An SVG drawing comes back as it was but for its paths,
+    which get few segments and the shortest text; a map or a track as it was but for the points of its lines; a table
+    stays a table of fewer points. Glyphs of a font get fewer points, in whole units: extrema, corners and lines stay
+    unless --keep names less, quadratic outlines stay quadratic, and hints of glyphs that change go. Other files are
+    compared at equal parameters.
 
     \b
     Examples:
       knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
       knotwork reduce countries.geojson --shared-borders -t 0.05 -o small.geojson
+      knotwork reduce Font.otf --glyphs a,b,U+0041 -t 1 -o out.otf
     """
 
     from knotwork.files.formats import format_of
     from knotwork.geometry.boxes import upside_down
 
+    features = [name for names in keep for name in names]
+
     def work(file: Path, output: Path | None) -> dict[str, Any] | None:
         kind = job.reading.kind(file)
+        if kind.module == "fonts" and (output is None or output == STREAM or format_of(output) is kind):
+            if distance == "parametric" or form is not None or degree is not None or flip or precision is not None:
+                raise click.UsageError("a font in place takes --tolerance, --keep and --glyphs, of how it is reduced")
+            return _font(job, file, output, tolerance, features)
         drawn = kind.module in IN_PLACE and (output is None or output == STREAM or format_of(output) is kind)
         if drawn and distance != "parametric" and form in (None, IN_PLACE[kind.module]) and degree is None and not flip:
             how = {"effort": effort, "precision": precision, "shared": shared_borders}
@@ -82,7 +93,7 @@ def reduce(
         def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, Any]:
             for axis, given in enumerate(spline.degree):
                 spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
-            kept: Any = (list(keep) if between == "geometric" else keep[0]) if keep else None
+            kept: Any = (features if between == "geometric" else features[0]) if features else None
             reduction = kw.reduce(
                 spline, allowed, distance=between, form=made, effort=effort, keep=kept, progress=progress
             )
@@ -121,5 +132,39 @@ def _lighter(
     job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g} between shapes")
     job.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
     job.echo(f"no point is farther than {report.upward(bound):.6g} from where it was: proven, rounding included")
+    job.echo(written_to(output, 0.0))
+    return None
+
+
+def _font(
+    job: Job, file: Path, output: Path | None, tolerance: Tolerance, keep: Sequence[str]
+) -> dict[str, Any] | None:
+    """Reduce a font in place, and say what became of it."""
+    from knotwork.files.fonts.lighter import lighter_font, require_font
+    from knotwork.removal.outlines import KEPT
+
+    document = job.reading.document(file)
+    start = time.perf_counter() - compiling.seconds()
+    units = require_font(document).units
+    allowed = tolerance.value * units if tolerance.relative else tolerance.value
+    found = lighter_font(document, allowed, keep=keep or KEPT)
+    data, _ = found.document.packed(output if output and output != STREAM else file)
+    seconds = time.perf_counter() - compiling.seconds() - start
+    if output:
+        save(output, data)
+    sizes = (document.size, len(data))
+    if job.as_json:
+        told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed}
+        told |= {"distance": "geometric", "bound": found.bound, "glyphs": list(found.glyphs), "hinted": found.hinted}
+        return told | {"points": list(found.points), "bytes": list(sizes)}
+    changed, every = found.glyphs
+    job.echo(
+        f"{file}: {report.counted(every, 'glyph')} of {units} units per em, tolerance {allowed:.6g} between shapes"
+    )
+    before, after = found.points
+    job.echo(f"{before:,} → {after:,} points, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
+    hints = f"; {found.hinted:,} of them had hints or instructions, which are dropped" if found.hinted else ""
+    job.echo(f"{report.counted(changed, 'glyph')} with fewer points{hints}")
+    job.echo(f"no point is farther than {report.upward(found.bound):.6g} from where it was: proven, rounding included")
     job.echo(written_to(output, 0.0))
     return None

@@ -65,7 +65,7 @@ _OPTIONS = (
     click.option("--split-at", metavar="NAME=VALUE", help="Rows that end a polyline of a table, as in pressure=0."),
     click.option("--open/--closed", "open_", default=None, help="Whether polylines are closed.  [as they end]"),
     click.option("--extras", type=click.Choice(["interpolate", "drop"]), help="Elevation and time of new points."),
-    click.option("--glyph", help="Name or character of the one glyph of a font to take."),
+    click.option("--glyph", "--glyphs", help="Glyphs of a font to take: names, characters or codes, as in a,b,U+0041."),
     click.option("--id", "name", metavar="NAME", help="Id of the one element of a drawing to take."),
 )
 
@@ -93,7 +93,7 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
             "closed": None if open_ is None else not open_,
             "name": name,
             "extras": extras,
-            "glyph": glyph,
+            "glyph": glyph.split(",") if glyph and len(glyph) > 1 else glyph,
         }
         options = {key: value for key, value in asked.items() if value is not None}
         return command(*args, reading=Reading(format_, options), **rest)

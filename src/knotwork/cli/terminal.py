@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from knotwork.spline import Spline
 
 
+#: what can be asked to stay
+FEATURES = ("corners", "lines", "extrema")
+
+
 class Failure(click.ClickException):
     """What went wrong, in one line on stderr; the exit code is 1."""
 
@@ -169,6 +173,15 @@ def _number(text: str) -> float:
         return float(text)
     except ValueError:
         return math.nan
+
+
+def features(text: str) -> list[str]:
+    """Return the names of features of a curve, separated by commas."""
+    found = text.split(",")
+    for name in found:
+        if name not in FEATURES:
+            raise click.BadParameter(f"{name!r}; expected {', '.join(FEATURES)}, separated by commas")
+    return found
 
 
 def axes(text: str) -> list[int]:

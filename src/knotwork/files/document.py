@@ -115,6 +115,11 @@ class Document:
         return replace(self, splines=tuple(changed.get(i, spline) for i, spline in enumerate(self.splines)))
 
     @property
+    def content(self) -> Any:
+        """What the format keeps of the file, to write it again."""
+        return self._content
+
+    @property
     def size(self) -> int:
         """How many bytes the file has."""
         return len(self._given)
@@ -171,8 +176,11 @@ class Document:
             data, bound = self.bytes(even_if_longer=even_if_longer)
         except KnotworkError as exc:
             raise FileError(f"{path}: {exc}") from exc
-        same = data == unpacked(self._given) and path.suffix.lower() == self.path.suffix.lower()
-        return self._given if same else packed(data, path), bound
+        if path.suffix.lower() == self.path.suffix.lower():
+            return self._given if data == unpacked(self._given) else packed(data, path), bound
+        if hasattr(self._content, "packed"):  # what a suffix says is for the format to see to
+            data = self._content.packed(data, path)
+        return packed(data, path), bound
 
 
 @dataclass(frozen=True)

@@ -86,8 +86,8 @@ FORMATS = (
         "fonts",
         "font",
         (".ttf", ".otf", ".woff"),
-        "outlines of glyphs",
-        "",
+        "outlines of glyphs, in place",
+        "the same glyphs",
         options=("glyph",),
         needs="fonttools",
         shapes=True,
@@ -112,6 +112,8 @@ ELSEWHERE = {
     ".fit": "turn it into GPX: gpsbabel -i garmin_fit -f file.fit -o gpx -F file.gpx",
     ".tcx": "turn it into GPX: gpsbabel -i gtrnctr -f file.tcx -o gpx -F file.gpx",
     ".dwg": "save it as DXF",
+    ".woff2": "unpack it: fonttools ttLib.woff2 decompress file.woff2",
+    ".ttc": "take it apart: ttc2otf or FontForge give its fonts one by one",
 }
 #: what tells GeoJSON from other JSON
 _MAP = re.compile(rb'"type"\s*:\s*"(FeatureCollection|Feature|GeometryCollection|(Multi)?(LineString|Polygon))"')
@@ -271,9 +273,9 @@ def encoded(
     if accuracy is not None and not (accuracy > 0 and math.isfinite(accuracy)):
         raise ParameterError(f"accuracy {accuracy} given; expected a finite number above 0")
     if not hasattr(found.codec, "encode"):
-        way = (
-            "holds triangles: kw.flatten(surface, tolerance) makes them" if found.triangles else "is read, not written"
-        )
+        way = "is written in place alone: open it, replace splines, write it"
+        if not hasattr(found.codec, "opened"):
+            way = "holds triangles: kw.flatten(surface, tolerance) makes them" if found.triangles else "is read, not written"
         raise FileError(f"{path}: a {found.name} {way}")
     try:
         data, bound = found.codec.encode(list(splines), accuracy)

@@ -1,0 +1,111 @@
+"""CFF outlines in place: char strings of glyphs that change are written anew, those of all others stay."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
+from knotwork.files.fonts.reading import drawn
+from knotwork.files.fonts.sfnt import font_of, with_tables
+from knotwork.files.fonts.truetype import Glyph
+
+#: operators of hints
+HINTS = ("hstem", "vstem", "hstemhm", "vstemhm", "hintmask", "cntrmask")
+
+
+def glyphs_of(font: Any, names: list[str]) -> list[Glyph]:
+    """Return glyphs that have contours of their own."""
+    from fontTools.pens.recordingPen import RecordingPen
+
+    strings = font["CFF "].cff.topDictIndex[0].CharStrings
+    found = []
+    for name in names:
+        pen = RecordingPen()
+        string = strings[name]
+        string.draw(pen)
+        if any(what == "addComponent" for what, _ in pen.value) or not pen.value:
+            continue
+        hinted = any(each in HINTS for each in string.program if isinstance(each, str)) or _hints_in_subroutines(string)
+        found.append(Glyph(name, drawn(pen.value), hinted, ""))
+    return found
+
+
+def _hints_in_subroutines(string: Any) -> bool:
+    """Tell whether hints are in subroutines: those that a glyph's own program does not show."""
+    from fontTools.misc.psCharStrings import SimpleT2Decompiler
+
+    private = string.private
+    seen = SimpleT2Decompiler(getattr(private, "Subrs", []), string.globalSubrs, private)
+    seen.execute(string)
+    return bool(seen.hintCount)
+
+
+def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> bytes:
+    """Return the font with some contours of some glyphs replaced, and their hints dropped."""
+    from fontTools.pens.recordingPen import RecordingPen
+    from fontTools.pens.t2CharStringPen import T2CharStringPen
+
+    read, font = font_of(data), font_of(data)  # one is read, which takes char strings apart, the other one written
+    shown = read["CFF "].cff.topDictIndex[0].CharStrings
+    top = font["CFF "].cff.topDictIndex[0]
+    strings = top.CharStrings
+    boxes = [np.array(top.FontBBox, float).reshape(2, 2)] if any(top.FontBBox) else []
+    for name, contours in changed.items():
+        given = RecordingPen()
+        shown[name].draw(given)
+        old = strings[name]
+        private = old.private
+        width = shown[name].width
+        pen = T2CharStringPen(None if width == private.defaultWidthX else width - private.nominalWidthX, None)
+        for i, commands in enumerate(_contours(given.value)):
+            _draw(pen, contours[i]) if i in contours else _replay(pen, commands)
+            boxes += [_around(contours[i])] if i in contours else []
+        new = pen.getCharString(private, old.globalSubrs)
+        new.compile()
+        strings[name] = new
+    if boxes and hasattr(top, "FontBBox"):
+        low, high = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+        top.FontBBox = [*map(int, np.floor(low)), *map(int, np.ceil(high))]
+    return with_tables(data, {"CFF ": font["CFF "].compile(font)})
+
+
+def _contours(commands: list[tuple[str, Any]]) -> list[list[tuple[str, Any]]]:
+    found: list[list[tuple[str, Any]]] = []
+    for each in commands:
+        if each[0] == "moveTo":
+            found.append([])
+        found[-1].append(each)
+    return found
+
+
+def _replay(pen: Any, commands: list[tuple[str, Any]]) -> None:
+    for what, points in commands:
+        getattr(pen, what)(*points)
+
+
+def _draw(pen: Any, runs: list[Array]) -> None:
+    """Draw a contour; its last line is implied by its end."""
+    pen.moveTo(_point(runs[0][0]))
+    for k, run in enumerate(runs):
+        if len(run) > 2:
+            pen.curveTo(*map(_point, run[1:]))
+        elif k + 1 < len(runs):
+            pen.lineTo(_point(run[1]))
+    pen.closePath()
+
+
+def _point(p: Array) -> tuple[float, float]:
+    return float(p[0]), float(p[1])
+
+
+def _around(runs: list[Array]) -> Array:
+    """Return the box around a contour."""
+    from fontTools.misc.bezierTools import calcCubicBounds
+
+    boxes = [np.array([run.min(axis=0), run.max(axis=0)]) for run in runs if len(run) == 2]
+    boxes += [np.array(calcCubicBounds(*map(_point, run))).reshape(2, 2) for run in runs if len(run) > 2]
+    both = np.array(boxes)
+    return np.array([both[:, 0].min(axis=0), both[:, 1].max(axis=0)])

@@ -1,0 +1,312 @@
+"""Fonts in place: glyphs that change are written anew, all else stays byte for byte."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import knotwork as kw
+from knotwork.cli import main
+from knotwork.errors import FileError, ParameterError
+from knotwork.files.fonts.lighter import lighter_font
+
+pytest.importorskip("fontTools")
+
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.recordingPen import DecomposingRecordingPen
+from fontTools.pens.t2CharStringPen import T2CharStringPen
+from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables import ttProgram
+from fontTools.ttLib.tables.DefaultTable import DefaultTable
+
+#: what the outlines of glyphs are in, and what speaks of them
+OUTLINES = {"glyf", "loca", "CFF ", "head"}
+
+
+def ring(pen, radius, center, parts):
+    """Draw a circle in cubics, with far more points than it needs."""
+    angles = 2 * np.pi * np.arange(parts + 1) / parts
+    out = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    along = 4 / 3 * np.tan(np.pi / 2 / parts) * np.stack([-out[:, 1], out[:, 0]], axis=1)
+    ends, after, before = (np.round(np.array(center) + radius * x) for x in (out, out + along, out - along))
+    ends[-1] = ends[0]
+    pen.moveTo(tuple(ends[0]))
+    for k in range(parts):
+        pen.curveTo(tuple(after[k]), tuple(before[k + 1]), tuple(ends[k + 1]))
+    pen.closePath()
+
+
+def square(pen):
+    """Draw a square with a point too many."""
+    pen.moveTo((100, 0))
+    for p in ((100, 400), (100, 700), (500, 700), (500, 0)):
+        pen.lineTo(p)
+    pen.closePath()
+
+
+def built(builder, path):
+    builder.setupHorizontalMetrics({".notdef": (600, 0), "o": (900, 100), "n": (600, 100), "both": (900, 100)})
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupOS2()
+    builder.setupPost()
+    builder.setupNameTable({"familyName": "Small", "styleName": "Regular"})
+    builder.save(path)
+    return path
+
+
+@pytest.fixture
+def truetype(tmp_path):
+    """A TrueType font with a ring of many points, a square, and both in one glyph, all with instructions."""
+    from fontTools.pens.cu2quPen import Cu2QuPen
+
+    parts = {"o": None, "n": None}
+    o, n, both = TTGlyphPen(None), TTGlyphPen(None), TTGlyphPen(parts)
+    ring(Cu2QuPen(o, 0.5, reverse_direction=True), 400, (500, 350), 24)
+    square(n)
+    both.addComponent("o", (1, 0, 0, 1, 0, 0))
+    both.addComponent("n", (0.5, 0, 0, 0.5, 700, 0))
+    glyphs = {".notdef": TTGlyphPen(None).glyph(), "o": o.glyph(), "n": n.glyph(), "both": both.glyph()}
+    for name in ("o", "both"):
+        glyphs[name].program = ttProgram.Program()
+        glyphs[name].program.fromBytecode(b"\x4b\x21")  # push, pop
+    builder = FontBuilder(1000)
+    builder.setupGlyphOrder(list(glyphs))
+    builder.setupCharacterMap({ord("o"): "o", ord("n"): "n", ord("b"): "both"})
+    builder.setupGlyf(glyphs)
+    return built(builder, tmp_path / "small.ttf")
+
+
+@pytest.fixture
+def cff(tmp_path):
+    """A CFF font with the same ring and square, both with hints."""
+    strings = {}
+    for name, width in ((".notdef", 600), ("o", 900), ("n", 600), ("both", 900)):
+        pen = T2CharStringPen(width, None)
+        if name in ("o", "both"):
+            ring(pen, 400, (500, 350), 24)
+        if name in ("n", "both"):
+            square(pen)
+        strings[name] = pen.getCharString()
+        if name == "o":
+            strings[name].program[1:1] = [-50, 20, "hstem"]
+    builder = FontBuilder(1000, isTTF=False)
+    builder.setupGlyphOrder(list(strings))
+    builder.setupCharacterMap({ord("o"): "o", ord("n"): "n", ord("b"): "both"})
+    builder.setupCFF("Small", {"FullName": "Small"}, strings, {})
+    return built(builder, tmp_path / "small.otf")
+
+
+@pytest.fixture(params=["truetype", "cff"])
+def font(request):
+    return request.getfixturevalue(request.param)
+
+
+def tables(data):
+    reader = TTFont(io.BytesIO(data)).reader
+    return {tag: reader[tag] for tag in reader.tables}
+
+
+def drawn(path, name):
+    """What a glyph draws, by fontTools."""
+    glyphs = TTFont(path).getGlyphSet()
+    pen = DecomposingRecordingPen(glyphs)
+    glyphs[name].draw(pen)
+    return pen.value
+
+
+def test_what_is_not_replaced_stays(font, tmp_path):
+    document = kw.open(font)
+    names = [place.name for place in document.places]
+    assert names == (["o", "n"] if font.suffix == ".ttf" else ["o", "n", "both", "both"])
+    assert all(place.closed and place.filled and place.units == "font units" for place in document.places)
+    assert document.bytes()[0] == font.read_bytes()
+    moved = document.replace(0, document.splines[0].transform(1, shift=[5.25, 0]))
+    out = tmp_path / f"out{font.suffix}"
+    assert moved.write(out).bound == pytest.approx(0.25)
+    before, after = tables(font.read_bytes()), tables(out.read_bytes())
+    assert list(before) == list(after)
+    changed = {tag for tag in before if before[tag] != after[tag]}
+    assert changed <= OUTLINES | {"hmtx"}
+    assert drawn(out, "n") == drawn(font, "n")
+    (old_ring,), (new_ring,) = (kw.read(path, glyph="o") for path in (font, out))
+    np.testing.assert_array_equal(new_ring.points, old_ring.points + np.array([5, 0]))
+    # advance widths stay; the left side bearing is where the outline begins
+    old, new = (TTFont(path)["hmtx"].metrics for path in (font, out))
+    assert {name: width for name, (width, _) in new.items()} == {name: width for name, (width, _) in old.items()}
+    assert new["n"] == old["n"]
+    if font.suffix == ".ttf":
+        assert new["o"][1] == old["o"][1] + 5
+        assert new["both"][1] == old["both"][1] + 5
+
+
+def test_instructions_that_speak_of_points_go(truetype, tmp_path):
+    document = kw.open(truetype)
+    out = tmp_path / "out.ttf"
+    document.replace(0, document.splines[0].transform(1, shift=[1, 0])).write(out)
+    glyf = TTFont(out)["glyf"]
+    assert not glyf["o"].program.getBytecode()
+    assert not hasattr(glyf["both"], "program")  # its part has other points now
+    document.replace(1, document.splines[1].transform(1, shift=[1, 0])).write(out)
+    assert TTFont(out)["glyf"]["o"].program.getBytecode() == b"\x4b\x21"
+
+
+def test_fewer_points_within_the_tolerance(font, tmp_path):
+    document = kw.open(font)
+    found = lighter_font(document, 1.0)
+    assert found.points[1] < found.points[0] / 2
+    assert 0 < found.bound <= 1
+    assert found.glyphs == ((2, 2) if font.suffix == ".ttf" else (2, 3))  # CFF stores no point on a side
+    assert found.hinted == 1
+    out = tmp_path / f"out{font.suffix}"
+    assert found.document.write(out).bound == 0
+    assert out.stat().st_size < font.stat().st_size
+    for name in ("o", "n", "both"):
+        for a, b in zip(kw.read(font, glyph=name), kw.read(out, glyph=name), strict=True):
+            assert kw.distance_bound(a, b).bound <= found.bound * 1.01
+            np.testing.assert_allclose(a.bounds, b.bounds, atol=1e-6)
+            assert a.degree in ((1,), b.degree)
+    assert tables(out.read_bytes())["hmtx"] == tables(font.read_bytes())["hmtx"]
+    if font.suffix == ".otf":
+        first, second = (TTFont(path)["CFF "].cff.topDictIndex[0].CharStrings for path in (font, out))
+        for name in first.charStrings:
+            first[name].draw(DecomposingRecordingPen(None))
+            second[name].draw(DecomposingRecordingPen(None))
+            assert first[name].width == second[name].width
+
+
+def test_what_costs_nothing_goes_at_any_tolerance(font):
+    """A point on the side of a square, and joints that are the middles of their neighbours, change no shape."""
+    found = lighter_font(kw.open(font), 1e-6, keep=())
+    assert found.points[1] < found.points[0] or font.suffix == ".otf"
+    assert found.bound <= 1e-6
+    again = lighter_font(found.document, 1e-6, keep=())
+    assert again.points[0] == again.points[1] == found.points[1]
+
+
+def test_shapes_of_other_kinds_are_rounded_in(font, tmp_path):
+    document = kw.open(font)
+    circle = kw.read(font, glyph="o")[0]
+    raised = kw.elevate(circle, 3 - circle.degree[0])
+    out = tmp_path / f"out{font.suffix}"
+    written = document.replace(0, raised).write(out)
+    assert written.bound < 1
+    assert kw.distance_bound(kw.open(out).splines[0], circle).bound <= written.bound * 1.01 + 1e-9
+    for wrong, said in (
+        (kw.curve([[0, 0], [100, 100], [200, 0]], 2), "contours of glyphs are closed"),
+        (circle.transform(1000), "beyond the 16 bits"),
+        (kw.curve(np.eye(4)), "curves in the plane"),
+    ):
+        with pytest.raises(FileError, match=said):
+            document.replace(0, wrong).bytes()
+
+
+def test_larger_glyphs_are_given_room(truetype, tmp_path):
+    document = kw.open(truetype)
+    angles = np.arange(300) / 150 * np.pi
+    many = kw.curve(9000 * np.stack([np.cos(angles), np.sin(angles)], axis=1), 1, periodic=True)
+    out = tmp_path / "out.ttf"
+    document.replace(1, many).write(out)
+    font = TTFont(out)
+    points = len(font["glyf"]["n"].coordinates)
+    assert font["maxp"].maxPoints >= points > 250
+    total = points // 1 + len(font["glyf"]["o"].coordinates)
+    assert font["maxp"].maxCompositePoints >= total
+    assert font["head"].xMax >= 8990
+
+
+def test_suffixes_say_what_a_font_holds(font, tmp_path):
+    document = kw.open(font)
+    document.write(tmp_path / "a.woff")
+    packed = kw.open(tmp_path / "a.woff")
+    assert tables((tmp_path / "a.woff").read_bytes()) == tables(font.read_bytes())
+    lighter_font(packed, 1.0).document.write(tmp_path / "b.woff")
+    assert len(kw.read(tmp_path / "b.woff", glyph="o")) == 1
+    packed.write(tmp_path / f"c{font.suffix}")
+    assert tables((tmp_path / f"c{font.suffix}").read_bytes()) == tables(font.read_bytes())
+    other = tmp_path / ("d.otf" if font.suffix == ".ttf" else "d.ttf")
+    with pytest.raises(FileError, match="knotwork convert"):
+        document.write(other)
+    assert not other.exists()
+
+
+def test_glyphs_by_name_character_and_code(font):
+    assert len(kw.open(font, glyph=["n", "U+006F"]).splines) == 2
+    with pytest.raises(ParameterError, match="glyph 'x' asked for"):
+        kw.open(font, glyph=["n", "x"])
+
+
+def test_a_composite_glyph_stands_for_its_parts(truetype):
+    with pytest.warns(UserWarning, match="'both' is made of o, n"):
+        document = kw.open(truetype, glyph="both")
+    assert [place.name for place in document.places] == ["o", "n"]
+
+
+def test_a_font_that_varies_is_refused(truetype, tmp_path):
+    font = TTFont(truetype)
+    font["gvar"] = DefaultTable("gvar")
+    font["gvar"].data = b"\0" * 20
+    font.save(tmp_path / "v.ttf")
+    with pytest.warns(UserWarning, match="the font varies"):
+        document = kw.open(tmp_path / "v.ttf")
+    assert all(place.fixed for place in document.places)
+    with pytest.raises(FileError, match="the font varies"):
+        document.replace(0, document.splines[0].transform(2)).bytes()
+    with pytest.raises(FileError, match="the font varies"):
+        lighter_font(document, 1)
+
+
+def test_parts_placed_by_points_stay(truetype, tmp_path):
+    font = TTFont(truetype)
+    part = font["glyf"]["both"].components[1]
+    part.firstPt, part.secondPt = 0, 0
+    font.save(tmp_path / "p.ttf")
+    document = kw.open(tmp_path / "p.ttf")
+    assert all(place.fixed for place in document.places)
+    assert lighter_font(document, 1.0).points == (lighter_font(document, 1.0).points[0],) * 2
+    with pytest.raises(FileError, match="by the numbers of its points"):
+        document.replace(0, document.splines[1]).bytes()
+
+
+def test_damaged_fonts_are_told(font, tmp_path):
+    data = font.read_bytes()
+    rng = np.random.default_rng(5)
+    path, out = tmp_path / f"bad{font.suffix}", tmp_path / f"out{font.suffix}"
+    cases = [data[:n] for n in range(1, len(data), 41)]
+    for _ in range(60):
+        wrong = bytearray(data)
+        for at in rng.integers(0, len(data), 4):
+            wrong[at] = rng.integers(256)
+        cases.append(bytes(wrong))
+    told = 0
+    for case in cases:
+        path.write_bytes(case)
+        try:
+            document = kw.open(path)
+            lighter_font(document, 5.0).document.write(out)
+        except FileError:
+            told += 1
+            assert not out.exists()
+        out.unlink(missing_ok=True)
+    assert told > 20
+
+
+def test_the_command(font, tmp_path):
+    out = tmp_path / f"out{font.suffix}"
+    run = CliRunner().invoke(main, ["reduce", str(font), "-t", "1", "-o", str(out), "--json"])
+    assert run.exit_code == 0, run.output
+    told = json.loads(run.output)
+    assert told["points"][1] < told["points"][0]
+    assert told["bytes"] == [font.stat().st_size, out.stat().st_size]
+    run = CliRunner().invoke(
+        main, ["reduce", str(font), "-t", "0.1%", "--glyphs", "o,U+006E", "--keep", "corners,lines"]
+    )
+    assert "glyphs of 1000 units per em, tolerance 1 between shapes" in run.output
+    assert "1 of them had hints or instructions, which are dropped" in run.output
+    run = CliRunner().invoke(main, ["info", str(out), "--glyph", "o"])
+    assert "1 spline" in run.output
+    run = CliRunner().invoke(main, ["reduce", str(font), "-t", "1", "--degree", "3"])
+    assert run.exit_code == 2
+    assert "--tolerance, --keep and --glyphs" in run.output
