@@ -14,6 +14,7 @@ from knotwork.files.svg.drawing import pieces_of
 from knotwork.files.svg.inplace import from_line
 from knotwork.geometry.bezier import joined, raised
 from knotwork.geometry.lengths import increasing
+from knotwork.knots import multiplicities
 from knotwork.removal.outlines import outlined
 from knotwork.removal.outlines.runs import is_ring, nets_of
 from knotwork.space import SplineSpace
@@ -101,7 +102,8 @@ def rounded(spline: Spline, cubic: bool, name: str) -> Rounded:
         if found is None:
             raise FileError(f"{name} is no quadratic curve, and none near it was found in whole font units")
         return Rounded(found.runs, off + found.bound)
-    runs = _runs(nets, cubic) if cubic else _implied(_runs(nets, False))
+    single = multiplicities(spline.space.knots, spline.space.breaks[:-1]) == 1
+    runs = _runs(nets, cubic) if cubic else _implied(_runs(nets, False), single)
     whole = [np.floor(run + 0.5) for run in runs]
     if not cubic and len(runs) == 1 and is_ring(runs[0]):
         whole[0][[0, -1]] = (whole[0][1] + whole[0][-2]) / 2
@@ -117,13 +119,13 @@ def _runs(nets: Array, cubic: bool) -> list[Array]:
     return [net[[0, -1]] if line else net for net, line in zip(full, straight, strict=True)]
 
 
-def _implied(runs: list[Array]) -> list[Array]:
-    """Return runs put together where the joints between them are implied."""
+def _implied(runs: list[Array], single: Array) -> list[Array]:
+    """Return runs put together where the joints between them are single knots, and implied."""
 
     def implied(a: Array, b: Array) -> bool:
         return min(len(a), len(b)) > 2 and bool((np.abs(a[-1] - (a[-2] + b[1]) / 2) <= IMPLIED).all())
 
-    joints = [implied(runs[k - 1], runs[k]) for k in range(len(runs))]
+    joints = [bool(single[k]) and implied(runs[k - 1], runs[k]) for k in range(len(runs))]
     if len(runs) > 1 and all(joints):
         handles = np.array([run[1] for run in runs])
         start = (handles[-1] + handles[0]) / 2
