@@ -275,7 +275,11 @@ def encoded(
     if not hasattr(found.codec, "encode"):
         way = "is written in place alone: open it, replace splines, write it"
         if not hasattr(found.codec, "opened"):
-            way = "holds triangles: kw.flatten(surface, tolerance) makes them" if found.triangles else "is read, not written"
+            way = (
+                "holds triangles: kw.flatten(surface, tolerance) makes them"
+                if found.triangles
+                else "is read, not written"
+            )
         raise FileError(f"{path}: a {found.name} {way}")
     try:
         data, bound = found.codec.encode(list(splines), accuracy)
