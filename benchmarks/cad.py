@@ -6,6 +6,7 @@ The files that the table was made for come in packages:
     apt-get download occt-misc freecad-common              # STEP and IGES; dpkg-deb -x each
     python benchmarks/cad.py FOLDER ...
     python benchmarks/cad.py --mutate 10000 FOLDER ...     # a clear error or splines, every time
+    python benchmarks/cad.py --large 100                   # MB of STEP: how fast it is read
 """
 
 from __future__ import annotations
@@ -13,12 +14,17 @@ from __future__ import annotations
 import argparse
 import random
 import re
+import resource
 import time
 import tracemalloc
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
+
+import knotwork as kw
 from knotwork.errors import KnotworkError
+from knotwork.files.cad import step
 from knotwork.files.formats import SUFFIXES
 
 CAD = [suffix for suffix, each in SUFFIXES.items() if each.module.startswith("cad.")]
@@ -52,6 +58,22 @@ def table(files: list[Path]) -> None:
         print(f"{count:6} files: {reason[:140]}")
 
 
+def large(size: int) -> None:
+    """Read a STEP file of surfaces of 40 × 40 points, and print how fast."""
+    x, y = np.meshgrid(*[np.linspace(0, 10, 40)] * 2)
+    one = len(step.encode([kw.surface(np.stack([x, y, np.sin(x)], -1))], None)[0])
+    nets = [np.stack([x + 12 * k, y, np.sin(x + k) * np.cos(y)], -1) for k in range(round(size * 1e6 / one))]
+    given = [kw.surface(net) for net in nets]
+    data = step.encode(given, None)[0]
+    start, cpu = time.perf_counter(), time.process_time()
+    found = step.decode(data, print)
+    took, worked = time.perf_counter() - start, time.process_time() - cpu
+    assert found == given
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"{len(data) / 1e6:.0f} MB of STEP, {len(found):,} surfaces: {len(data) / 1e6 / took:.1f} MB/s, ", end="")
+    print(f"{len(data) / 1e6 / worked:.1f} MB per second of a processor; {peak:.0f} MB of memory at most")
+
+
 def mutate(files: list[Path], count: int) -> None:
     """Read damaged copies; any error but a clear one stops here."""
     random.seed(1)
@@ -80,11 +102,14 @@ def mutate(files: list[Path], count: int) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("folders", nargs="*", type=Path)
     parser.add_argument("--mutate", type=int)
+    parser.add_argument("--large", type=int, help="megabytes")
     given = parser.parse_args()
     paths = sorted(p for folder in given.folders for p in folder.rglob("*") if p.suffix.lower() in CAD and p.is_file())
-    if given.mutate:
+    if given.large:
+        large(given.large)
+    elif given.mutate:
         mutate(paths, given.mutate)
     else:
         table(paths)

@@ -13,6 +13,8 @@ import knotwork as kw
 from files.cad.samples import iges_file, planar, tensor
 from knotwork.errors import FileError, KnotworkError
 from knotwork.files.cad import iges, step
+from knotwork.files.cad.step import syntax
+from knotwork.files.cad.step.syntax import Text
 
 HEAD = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n"
 TAIL = "ENDSEC;\nEND-ISO-10303-21;\n"
@@ -201,3 +203,38 @@ def test_mutated_files_end_in_splines_or_a_clear_error(kind: str, data: st.DataO
         text[i : i + n] = data.draw(st.binary(max_size=4) | st.just(bytes(text[i : i + n]) * 2))
     with contextlib.suppress(KnotworkError):
         codec.decode(bytes(text), lambda _: None)
+
+
+@given(st.data())
+def test_entities_found_at_once_are_those_found_one_by_one(data: st.DataObject) -> None:
+    """Plain files, spaced or not, and damaged ones: each way finds the same entities at the same places."""
+    text = bytearray(step.encode([planar(5), tensor(data.draw, 2)], None)[0])
+    for _ in range(data.draw(st.integers(0, 4))):
+        i = data.draw(st.integers(400, len(text) - 1))
+        text[i : i + data.draw(st.integers(0, 3))] = data.draw(
+            st.sampled_from(
+                [b"", b" ", b"'", b"''", b"'a;#b'", b";", b"\r\n", b"/* no */", b"(", b"#1=", b"ENDSEC;", b"="]
+            )
+        )
+    found = Text(bytes(text))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(syntax, "indexed", lambda *_: None)
+        patch.setattr(syntax, "MANY", 10**9)
+        expected = Text(bytes(text))
+    assert found.broken == expected.broken
+    assert {k: found.place(k) for k in found._rows} == {k: expected.place(k) for k in expected._rows}
+    assert {k: found.start(k) for k in found._rows} == {k: expected.start(k) for k in expected._rows}
+    assert {n: k for n, k in found.named.items() if k} == expected.named
+
+
+def test_many_points_are_read_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that are not plain among them are read alone, and what is wrong with one is told when it is asked for."""
+    monkeypatch.setattr(syntax, "MANY", 1)
+    text = "ISO-10303-21;DATA;\n#1=CARTESIAN_POINT('(1,2,3)',(1.,-2.E1,3));#2=CARTESIAN_POINT('',(1.,2.));"
+    text += "#3=CARTESIAN_POINT('a;b',( 4. , 5., 6.E-1 ));\n#4=CARTESIAN_POINT('',(7.,8.,9.));ENDSEC;"
+    found = Text(text.encode())
+    assert found.points([3, 1]).tolist() == [[4, 5, 0.6], [1, -20, 3]]
+    with pytest.raises(FileError, match="#2 is a point of 2 coordinates"):
+        found.points([1, 2])
+    with pytest.raises(FileError, match="#9 is referred to, but not there"):
+        found.points([9])

@@ -73,7 +73,7 @@ class Reader:
             a, b = next(iter(self.text.record(key).values()))[2:4]
             same[a].append(b)
             same[b].append(a)
-        for key in self.text.named.get("", []):
+        for key in self.text.several("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION"):
             record = self.text.record(key)
             if "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION" in record and "REPRESENTATION_RELATIONSHIP" in record:
                 child, parent = record["REPRESENTATION_RELATIONSHIP"][2:4]
@@ -248,7 +248,8 @@ class Reader:
         layer = self.layers.get(key)
         place = Place(self._name(key) or name, layer, units=self.units, where=where + more)
         return [
-            Shape(spline if m is HERE else moved(spline, m), place, entity, own, magnification(m)) for m in matrices
+            Shape(spline if m is HERE else moved(spline, m), place, entity, own, 1.0 if m is HERE else magnification(m))
+            for m in matrices
         ]
 
     def _name(self, key: int) -> str | None:
@@ -266,7 +267,7 @@ class Reader:
 def _units(text: Text) -> tuple[str | None, float]:
     """Return the name of the unit of length, and how many radians the unit of angles is."""
     length, radians = None, 1.0
-    for key in text.named.get("", []):
+    for key in text.several("LENGTH_UNIT", "PLANE_ANGLE_UNIT"):
         record = text.record(key)
         if "LENGTH_UNIT" in record and length is None:
             if "SI_UNIT" in record:
@@ -277,7 +278,9 @@ def _units(text: Text) -> tuple[str | None, float]:
         angle = record.get("CONVERSION_BASED_UNIT", []) if "PLANE_ANGLE_UNIT" in record else []
         if angle and str(angle[0]).upper().startswith("DEG"):
             radians = math.pi / 180
-    for key in text.named.get("", []):  # an inch is made of millimetres: the unit of the context counts
+    for key in text.several(
+        "GLOBAL_UNIT_ASSIGNED_CONTEXT"
+    ):  # an inch is made of millimetres: the unit of the context counts
         record = text.record(key)
         if "GLOBAL_UNIT_ASSIGNED_CONTEXT" in record:
             for unit in record["GLOBAL_UNIT_ASSIGNED_CONTEXT"][0]:

@@ -49,6 +49,8 @@ class Geometry:
         #: how many radians the unit of angles is
         self.radians = radians
         self._path: list[int] = []
+        #: the B-spline that was made last, which is often asked for again
+        self._last: tuple[int, Spline] | None = None
 
     @contextmanager
     def within(self, key: int) -> Iterator[dict[str, list[Any]]]:
@@ -81,10 +83,8 @@ class Geometry:
 
     def point(self, key: int) -> Array:
         """Return a point in space."""
-        p = self.text.point(key)
-        if len(p) != 3 or not all(map(math.isfinite, p)):
-            raise FileError(f"#{key} is a point of {len(p)} coordinates; expected 3 finite ones")
-        return np.array(p)
+        found: Array = self.text.points([key])[0]
+        return found
 
     def vertex(self, key: int) -> Array:
         """Return the point of a vertex, or that of a point."""
@@ -123,7 +123,7 @@ class Geometry:
                 _, basis, first, last, same, *_ = record[kind]
                 return [(basis, self.between(basis, self._end(first), self._end(last), same == ".T."))]
             if kind == "POLYLINE":
-                points = np.array([self.point(p) for p in record[kind][1]])
+                points = self.text.points(record[kind][1])
                 return [(key, Spline(SplineSpace.clamped(1, len(points)), points))]
             if kind in ("CIRCLE", "ELLIPSE"):
                 return [(key, self._conic(record, kind)(0.0, 2 * math.pi))]
@@ -201,6 +201,11 @@ class Geometry:
 
     def bspline(self, key: int) -> Spline:
         """Return a B-spline curve or surface, as its entity says."""
+        if self._last is None or self._last[0] != key:
+            self._last = key, self._bspline(key)
+        return self._last[1]
+
+    def _bspline(self, key: int) -> Spline:
         with self.within(key) as record:
             names = set(record)
             surface = any("SURFACE" in name for name in names)
@@ -211,9 +216,11 @@ class Geometry:
                 cut = 8 if surface else 6
                 base, knots = whole[1:cut], whole[cut:] or None
             degrees, net = base[:k], base[k]
-            points = np.array(
-                [[self.point(p) for p in row] for row in net] if surface else [self.point(p) for p in net]
-            )
+            rows = net if surface else [net]
+            if len({len(row) for row in rows}) != 1:
+                raise FileError(f"#{key} has rows of different lengths")
+            points = self.text.points([p for row in rows for p in row])
+            points = points.reshape(len(rows), -1, 3) if surface else points
             form = next((f for f in ("BEZIER", "QUASI_UNIFORM", "UNIFORM") if f"{f}_{stem}" in names), "")
             spaces = []
             for axis, degree in enumerate(degrees):

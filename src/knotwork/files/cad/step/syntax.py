@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import math
 import re
+from itertools import islice, pairwise
 from typing import Any
 
+import numpy as np
+
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
+from knotwork.files.cad.step.index import Index, coordinates, indexed
 
 _SPACE = r"(?>\s+|/\*(?>[^*]+|\*(?!/))*\*/)*+"
 _ENTITY = re.compile(
     _SPACE + r"(?:#(\d+)\s*=\s*(\w*)((?>[^';/]+|'[^']*'|/\*(?>[^*]+|\*(?!/))*\*/|/)*+);|(ENDSEC)\s*;|(\S|\Z))"
 )
-_TOKEN = re.compile(
-    r"\s*(?:#(\d+)|([-+]?\d+(?![\d.Ee]))|([-+]?\d+\.?\d*(?:[Ee][-+]?\d+)?)|'((?:[^']|'')*+)'|([(])|([)])|(,)"
-    r"|(\.\w+\.|[$*])|(!?[A-Za-z_]\w*)|(\"[0-9A-Fa-f]*\")|(/\*(?>[^*]+|\*(?!/))*\*/)|(\S))"
-)
+_TOKEN = re.compile(r"[^\s'(),/]+|[(),]|'(?:[^']|'')*+'|/\*(?>[^*]+|\*(?!/))*\*/|\S")
+_NUMBER = re.compile(r"[-+]?\d+(\.\d*)?([Ee][-+]?\d+)?")
+_OTHER = re.compile(r"(\.\w+\.)|([$*])|(!?[A-Za-z_]\w*)|(\"[0-9A-Fa-f]*\")|(/\*.*\*/)", re.DOTALL)
 _DATA = re.compile(r"\bDATA\s*(?:\([^;]*\))?\s*;")
 _REFERENCE = re.compile(r"#(\d+)")
+#: records that are kept
+RECENT = 64
+#: so many points are worth reading at once
+MANY = 1000
 #: lists may be nested so deep
 DEEP = 16
 
@@ -32,21 +41,45 @@ class Text:
         self.text = data.decode("latin-1")
         if "ISO-10303-21" not in self.text[:2000]:
             raise FileError("there is no ISO-10303-21 at the start; expected a STEP file")
-        #: for each entity its name ('' if it is made of several), and where its parameters stand
-        self.places: dict[int, tuple[str, int, int]] = {}
-        self.starts: dict[int, int] = {}
+        self._data = data
+        #: for each entity its row in the lists below
+        self._rows: dict[int, int] = {}
+        #: where each begins, its name ('' if it is made of several), and where its parameters stand
+        self._starts: list[int] = []
+        self._names: list[str] = []
+        self._first: list[int] = []
+        self._last: list[int] = []
+        #: the entities of each name
         self.named: dict[str, list[int]] = {}
         self.broken: str | None = None
+        #: records that were parsed last: most are asked for several times, one time after the other
+        self._recent: dict[int, dict[str, list[Any]]] = {}
         start = _DATA.search(self.text)
         if start is None:
             raise FileError("there is no DATA section in this file")
         while start is not None:
-            end = self._section(start.end())
+            found = indexed(self.text, data, start.end())
+            end = self._section(start.end()) if found is None else self._taken(found)
             start = _DATA.search(self.text, end)
+        self._points = self._all_points()
+
+    def _taken(self, found: Index) -> int:
+        """Take the entities that were found at once."""
+        self._rows |= zip(found.keys, range(len(self._starts), len(self._starts) + len(found.keys)), strict=True)
+        self._starts += found.starts
+        self._first += found.first
+        self._last += found.last
+        codes = found.codes.tolist()
+        self._names += map(found.names.__getitem__, codes)
+        order = np.argsort(found.codes, kind="stable")
+        keys = np.array(found.keys)[order].tolist()
+        edges = np.searchsorted(found.codes[order], np.arange(len(found.names) + 1)).tolist()
+        for name, (lo, hi) in zip(found.names, pairwise(edges), strict=True):
+            self.named.setdefault(name, []).extend(keys[lo:hi])
+        return found.end
 
     def _section(self, at: int) -> int:
-        """Index the entities of a section from a place on; return where it ends."""
-        places, starts, named = self.places, self.starts, self.named
+        """Find the entities of a section one by one, from a place on; return where it ends."""
         for found in _ENTITY.finditer(self.text, at):
             number = found[1]
             if number is None:
@@ -57,14 +90,23 @@ class Text:
                     return len(self.text)
                 return found.end()
             key = int(number)
-            name = found[2]
-            places[key] = (name, *found.span(3))
-            starts[key] = found.start(1) - 1
-            if name in named:
-                named[name].append(key)
-            else:
-                named[name] = [key]
+            self._rows[key] = len(self._starts)
+            self._starts.append(found.start(1) - 1)
+            self._names.append(found[2])
+            self._first.append(found.start(3))
+            self._last.append(found.end(3))
+            self.named.setdefault(found[2], []).append(key)
         return len(self.text)
+
+    def _all_points(self) -> tuple[Array, dict[int, int]]:
+        """Return the plain points of space, if there are many, and the row of each."""
+        keys = self.named.get("CARTESIAN_POINT", [])
+        if len(keys) < MANY:
+            return np.zeros((0, 3)), {}
+        rows = [self._rows[key] for key in keys]
+        found = coordinates(self.text, self._data, [self._first[r] for r in rows], [self._last[r] for r in rows])
+        plain = np.array(keys)[found.plain].tolist()
+        return found.points, dict(zip(plain, range(len(plain)), strict=True))
 
     def line(self, at: int) -> int:
         """Return the number of the line of a place in the text."""
@@ -72,9 +114,27 @@ class Text:
 
     def place(self, key: int) -> tuple[str, int, int]:
         """Return the name of an entity and where its parameters stand."""
-        found = self.places.get(key)
-        if found is None:
+        row = self._rows.get(key)
+        if row is None:
             raise FileError(f"#{key} is referred to, but not there")
+        return self._names[row], self._first[row], self._last[row]
+
+    def start(self, key: int) -> int:
+        """Return where the statement of an entity begins."""
+        return self._starts[self._rows[key]]
+
+    @property
+    def largest(self) -> int:
+        """The largest number of an entity."""
+        return max(self._rows)
+
+    def several(self, *names: str) -> list[int]:
+        """Return the entities made of several whose text has one of these names."""
+        found = []
+        for key in self.named.get("", []):
+            _, a, b = self.place(key)
+            if any(self.text.find(name, a, b) >= 0 for name in names):
+                found.append(key)
         return found
 
     def name(self, key: int) -> str:
@@ -83,6 +143,14 @@ class Text:
 
     def record(self, key: int) -> dict[str, list[Any]]:
         """Return the parameters of an entity by name: one name, or several."""
+        known = self._recent.get(key)
+        if known is None:
+            if len(self._recent) >= RECENT:
+                self._recent.clear()
+            known = self._recent[key] = self._record(key)
+        return known
+
+    def _record(self, key: int) -> dict[str, list[Any]]:
         name, a, b = self.place(key)
         parsed = self._parsed(key, a, b)
         if name:
@@ -102,40 +170,63 @@ class Text:
         except ValueError:
             raise FileError(f"line {self.line(a)}: #{key} has no coordinates") from None
 
+    def points(self, keys: list[int]) -> Array:
+        """Return points of space, shape (n, 3)."""
+        every, rows = self._points
+        try:
+            return every[[rows[key] for key in keys]]
+        except KeyError:  # few points, or not all plain ones
+            return np.array([self._in_space(key) for key in keys]).reshape(-1, 3)
+
+    def _in_space(self, key: int) -> list[float]:
+        p = self.point(key)
+        if len(p) != 3 or not all(map(math.isfinite, p)):
+            raise FileError(f"#{key} is a point of {len(p)} coordinates; expected 3 finite ones")
+        return p
+
     def _parsed(self, key: int, at: int, end: int) -> list[Any]:
         """Return the values between two places: lists, numbers, texts; a name before a list makes a pair of them."""
-        stack: list[list[Any]] = [[]]
-        for found in _TOKEN.finditer(self.text, at, end):
-            kind, top = found.lastindex, stack[-1]
-            if kind == 1:
-                top.append(Ref(found[1]))
-            elif kind == 2:
-                top.append(int(found[2]) if len(found[2]) < 30 else float(found[2]))
-            elif kind == 3:
-                top.append(float(found[3]))
-            elif kind == 5:
+        top: list[Any] = []
+        stack = [top]
+        for k, word in enumerate(_TOKEN.findall(self.text, at, end)):
+            mark = word[0]
+            if mark == ",":
+                continue
+            if mark == "#" and word[1:].isdecimal():
+                top.append(Ref(word[1:]))
+            elif mark == "(":
                 if len(stack) > DEEP:
-                    raise FileError(f"line {self.line(found.start())}: lists are nested more than {DEEP} deep")
-                stack.append([])
-            elif kind == 6:
+                    raise FileError(f"{self._token(at, end, k)}: lists are nested more than {DEEP} deep")
+                top = []
+                stack.append(top)
+            elif mark == ")":
                 if len(stack) < 2:
-                    raise FileError(f"line {self.line(found.start())}: #{key} has a ) too many")
-                stack.pop()
-                if stack[-1] and type(stack[-1][-1]) is _Name:
-                    stack[-1][-1] = (str(stack[-1][-1]).upper(), top)
+                    raise FileError(f"{self._token(at, end, k)}: #{key} has a ) too many")
+                inner, top = stack.pop(), stack[-1]
+                if top and type(top[-1]) is _Name:
+                    top[-1] = (str(top[-1]).upper(), inner)
                 else:
-                    stack[-1].append(top)
-            elif kind == 4:
-                top.append(found[4])
-            elif kind == 8:
-                top.append(None if found[8] in "$*" else found[8])
-            elif kind == 9:
-                top.append(_Name(found[9]))
-            elif kind == 12:
-                raise FileError(f"line {self.line(found.start(12))}: {found[12]!r} in #{key} makes no sense")
+                    top.append(inner)
+            elif mark == "'" and len(word) > 1:
+                top.append(word[1:-1])
+            elif number := _NUMBER.fullmatch(word):
+                whole = number[1] is None and number[2] is None and len(word) < 30
+                top.append(int(word) if whole else float(word))
+            elif other := _OTHER.fullmatch(word):
+                if other[1] or other[2]:
+                    top.append(other[1])
+                elif other[3]:
+                    top.append(_Name(word))
+            else:
+                raise FileError(f"{self._token(at, end, k)}: {word[:40]!r} in #{key} makes no sense")
         if len(stack) > 1:
             raise FileError(f"line {self.line(at)}: #{key} has a ( that is not closed")
-        return stack[0]
+        return top
+
+    def _token(self, at: int, end: int, k: int) -> str:
+        """Return in which line a token stands."""
+        found = next(islice(_TOKEN.finditer(self.text, at, end), k, None))
+        return f"line {self.line(found.start())}"
 
 
 class _Name(str):

@@ -61,7 +61,7 @@ def rewrite(text: Text, changed: dict[int, Spline]) -> bytes:
     """Return the file with some B-splines replaced; points that were theirs alone go, all else stays as it was."""
     uses = Counter(references(text.text))  # the statement of an entity counts as one
     pieces: list[tuple[int, int, str]] = []
-    following = max(text.places) + 1
+    following = text.largest + 1
     for key, spline in changed.items():
         name, a, b = text.place(key)
         points, ids = points_of(spline, following)
@@ -70,11 +70,11 @@ def rewrite(text: Text, changed: dict[int, Spline]) -> bytes:
         given = record.get("REPRESENTATION_ITEM", next(iter(record.values())))
         label = given[0] if given and isinstance(given[0], str) and not given[0].startswith(".") else ""
         pieces.append((a - len(name), b, entity(spline, f"'{label}'", ids)))
-        pieces.append((text.starts[key], text.starts[key], "".join(p + "\n" for p in points)))
+        pieces.append((text.start(key), text.start(key), "".join(p + "\n" for p in points)))
         uses.subtract(references(text.text[a:b]))
         for old in set(references(text.text[a:b])):
             if uses[old] <= 1 and text.name(old) == "CARTESIAN_POINT":
-                start, end = text.starts[old], text.place(old)[2] + 1
+                start, end = text.start(old), text.place(old)[2] + 1
                 if text.text[end : end + 2] == "\r\n":
                     end += 2
                 elif text.text[end : end + 1] == "\n":
