@@ -10,6 +10,7 @@ HERE = Path(__file__).parent
 project, author, release = "Knotwork", "The Knotwork authors", kw.__version__
 project_copyright = author
 extensions = ["myst_parser", "sphinx_external_toc", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click"]
+smartquotes = False
 external_toc_path = "toc.yml"
 exclude_patterns = ["_build", "paper", "figures"]
 myst_heading_anchors = 3
