@@ -83,6 +83,14 @@ FORMATS = (
         needs="ezdxf",
     ),
     Format(
+        "cad.rhino",
+        "Rhino",
+        (".3dm",),
+        "curves and surfaces",
+        "curves and surfaces",
+        needs="rhino3dm",
+    ),
+    Format(
         "fonts",
         "font",
         (".ttf", ".otf", ".woff"),
