@@ -20,6 +20,7 @@ def run(tmp_path, monkeypatch):
     kw.write("line.json", kw.curve([[0.0, 0], [4, 0]], 1))
     kw.write("arch.json", kw.curve([[0.0, 0], [2, 2], [4, 0]], 2))
     kw.write("f.json", kw.curve([-1.0, 1], 1))
+    kw.write("solid.json", kw.curve([[0.0, 0, 0], [1, 1, 1]], 1))
 
     def run(*words, code=0):
         result = CliRunner().invoke(main, words)
@@ -77,3 +78,38 @@ def test_length_and_distance(run):
     low, high = json.loads(run("distance", "line.json", "arch.json", "--json").stdout)[0]["hausdorff"]
     assert low <= 1 <= high
     assert "Hausdorff" in run("distance", "line.json", "arch.json").stdout
+
+
+def test_intersect(run):
+    kw.write("cross.json", [kw.curve([[1.0, -1], [1, 2]], 1), kw.curve([[9.0, 9], [9, 8]], 1)])
+    lines = run("intersect", "line.json", "cross.json").stdout.splitlines()
+    assert lines[0] == "first,second,a,a_to,b,b_to,x,y,multiplicity,change"
+    assert len(lines) == 2
+    cells = lines[1].split(",")
+    assert cells[:2] == ["0", "0"]
+    assert float(cells[2]) <= 0.25 <= float(cells[3])
+    assert float(cells[4]) <= 1 / 3 <= float(cells[5])
+    assert cells[8:] == ["1", "-1"]
+    told = json.loads(run("intersect", "line.json", "cross.json", "--json").stdout)
+    assert told[0]["points"][0] == pytest.approx([1, 0])
+    near = run("intersect", "arch.json", "cross.json", "-t", "10").stdout.splitlines()
+    assert {line.split(",")[1] for line in near[1:]} == {"0", "1"}
+
+
+def test_intersect_one_file(run):
+    eight = kw.curve([[0.0, 0], [2, 2], [2, 0], [0, 2]], 1, periodic=True)
+    kw.write("drawing.json", [eight, kw.curve([[0.0, 0.5], [2, 0.5]], 1), kw.curve([[0.5, 0.5], [3, 0.5]], 1)])
+    rows = [line.split(",") for line in run("intersect", "drawing.json").stdout.splitlines()[1:]]
+    assert [row[:2] for row in rows].count(["0", "0"]) == 1
+    assert [row[-2] for row in rows if row[:2] == ["1", "2"]] == ["along"]
+    assert "2-D and in 3-D" in run("intersect", "drawing.json", "solid.json", code=1).stderr
+
+
+def test_tables_and_standard_input(run):
+    Path("walk.csv").write_text("time,east,north\n0,0,0\n1,3,4\n2,3,0\n")
+    told = run("length", "walk.csv", "--columns", "east,north").stdout
+    assert "9.0" in told
+    text = Path("line.json").read_text()
+    done = CliRunner().invoke(main, ["length", "-", "--format", "json"], input=text)
+    assert "4.0" in done.output
+    assert "walk" not in run("sample", "walk.csv", "--columns", "east,north", "--number", "2").stdout

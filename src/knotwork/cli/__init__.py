@@ -3,6 +3,7 @@
 from knotwork.cli import (  # their commands join the program
     bulk,
     changing,
+    crossing,
     editing,
     fitting,
     insertion_methods,
@@ -17,6 +18,7 @@ from knotwork.cli.program import main
 __all__ = [
     "bulk",
     "changing",
+    "crossing",
     "editing",
     "fitting",
     "insertion_methods",

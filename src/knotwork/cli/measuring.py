@@ -11,15 +11,17 @@ import numpy as np
 import knotwork as kw
 from knotwork.cli import report, terminal
 from knotwork.cli.program import FILE, as_json, main, output, print_json, require_writable
+from knotwork.cli.streams import Reading, reading
 from knotwork.cli.terminal import Failure, Tolerance
 
 
 @main.command(short_help="Polylines, or triangles, within a tolerance.")
 @click.argument("file", type=FILE)
+@reading
 @click.option("-t", "--tolerance", type=terminal.tolerance, default="0.1%", help="Largest distance.  [default: 0.1%]")
 @output
 @as_json
-def flatten(file: Path, tolerance: Tolerance, output: Path, as_json: bool) -> None:
+def flatten(file: Path, tolerance: Tolerance, output: Path, as_json: bool, reading: Reading) -> None:
     """Write the curves of FILE as polylines of few vertices, or its surfaces as triangles, within the tolerance.
 
     Triangles go to .stl, .ply and .obj files. Surfaces are not trimmed; curves beside them are left out.
@@ -33,7 +35,7 @@ def flatten(file: Path, tolerance: Tolerance, output: Path, as_json: bool) -> No
 
     kind = SUFFIXES.get(output.suffix.lower())
     require_writable(output, [s for s, each in SUFFIXES.items() if each.writes])
-    splines = kw.read(file)
+    splines = reading.splines(file)
     surfaces = [s for s in splines if s.parameters > 1]
     meshed = bool(kind and kind.triangles and (surfaces or not kind.reads))
     if meshed and not surfaces:
@@ -65,10 +67,11 @@ def _vertices(count: int) -> str:
 
 @main.command(short_help="Points of curves, as CSV.")
 @click.argument("file", type=FILE)
+@reading
 @click.option("--at", type=terminal.knots, help="Parameters, as in 0.25,0.5.")
 @click.option("--number", type=click.IntRange(2, 10**7), help="So many parameters, evenly spaced.")
 @click.option("--by-length", "lengths", type=click.IntRange(2, 10**7), help="So many points, evenly spaced by length.")
-def sample(file: Path, at: Sequence[float] | None, number: int | None, lengths: int | None) -> None:
+def sample(file: Path, at: Sequence[float] | None, number: int | None, lengths: int | None, reading: Reading) -> None:
     """Print points of the curves of FILE as CSV: the number of the curve, the parameter, the coordinates.
 
     \b
@@ -78,7 +81,7 @@ def sample(file: Path, at: Sequence[float] | None, number: int | None, lengths: 
     """
     if sum(x is not None for x in (at, number, lengths)) != 1:
         raise click.UsageError("expected one of --at, --number and --by-length")
-    splines = kw.read(file)
+    splines = reading.splines(file)
     dims = max((s.dim for s in splines), default=0)
     click.echo(",".join(["curve", "u", *("xyzw"[k] if dims <= 4 else f"x{k + 1}" for k in range(dims))]))
     for i, s in enumerate(splines):
@@ -98,10 +101,11 @@ def sample(file: Path, at: Sequence[float] | None, number: int | None, lengths: 
 
 @main.command(short_help="All zeros of functions, enclosed.")
 @click.argument("file", type=FILE)
+@reading
 @click.option("--derivative", type=click.IntRange(0, 50), default=0, help="Of which derivative.  [default: 0]")
 @click.option("--coordinate", type=click.IntRange(0), help="Of which coordinate, if curves have several.")
 @as_json
-def zeros(file: Path, derivative: int, coordinate: int | None, as_json: bool) -> None:
+def zeros(file: Path, derivative: int, coordinate: int | None, as_json: bool, reading: Reading) -> None:
     """Print the zeros of the functions of FILE: between which parameters, and of which multiplicity.
 
     \b
@@ -109,7 +113,7 @@ def zeros(file: Path, derivative: int, coordinate: int | None, as_json: bool) ->
       knotwork zeros curve.json --coordinate 1
     """
     rows = []
-    for i, s in enumerate(kw.read(file)):
+    for i, s in enumerate(reading.splines(file)):
         if s.dim > 1:
             if coordinate is None or coordinate >= s.dim:
                 raise Failure(f"{file}: spline {i} has {s.dim} coordinates; expected --coordinate 0 to {s.dim - 1}")
@@ -131,15 +135,16 @@ def zeros(file: Path, derivative: int, coordinate: int | None, as_json: bool) ->
 
 @main.command(short_help="Lengths of curves, with bounds on the error.")
 @click.argument("file", type=FILE)
+@reading
 @as_json
-def length(file: Path, as_json: bool) -> None:
+def length(file: Path, as_json: bool, reading: Reading) -> None:
     """Print the length of each curve of FILE.
 
     \b
     Example:
       knotwork length coast.csv
     """
-    found = [kw.length(s) for s in kw.read(file)]
+    found = [kw.length(s) for s in reading.splines(file)]
     if as_json:
         print_json({"input": str(file), "lengths": [{"value": m.value, "bound": m.bound} for m in found]})
         return
@@ -151,16 +156,17 @@ def length(file: Path, as_json: bool) -> None:
 @main.command(short_help="How far the curves of two files are apart.")
 @click.argument("first", type=FILE)
 @click.argument("second", type=FILE)
+@reading
 @click.option("--accuracy", type=float, help="How far bounds may be apart.  [default: a 10,000th of the extent]")
 @as_json
-def distance(first: Path, second: Path, accuracy: float | None, as_json: bool) -> None:
+def distance(first: Path, second: Path, accuracy: float | None, as_json: bool, reading: Reading) -> None:
     """Print bounds on the Hausdorff and the Fréchet distance of the curves of two files, one by one.
 
     \b
     Example:
       knotwork distance coast.csv reduced.json
     """
-    a, b = kw.read(first), kw.read(second)
+    a, b = reading.splines(first), reading.splines(second)
     if len(a) != len(b):
         raise Failure(f"{first} has {report.counted(len(a), 'curve')}, {second} {len(b)}; expected as many")
     found = [kw.distance(f, g, accuracy) for f, g in zip(a, b, strict=True)]
