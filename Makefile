@@ -4,10 +4,10 @@ PYTHON ?= python3
 BIN := .venv/bin
 # Processes that share the tests: all cores unless told otherwise, as in `make test CORES=1`.
 CORES ?= auto
-# Random results of each kind that `make check-removal` works out again.
+# Random results of each kind that `make check-removal` and `make check-geometry` work out again.
 NUMBER ?= 1000
 
-.PHONY: help demo book docs test slow thorough bounds lint bench bench-removal check-removal methods crossovers accuracy clean
+.PHONY: help demo book docs test slow thorough bounds lint bench bench-removal check-removal check-geometry methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -48,6 +48,9 @@ bench-removal: .venv/tested  ## control points that `reduce` leaves, and its tim
 
 check-removal: .venv/tested  ## bounds of random reductions, worked out again in fractions: make check-removal NUMBER=10000
 	$(BIN)/python tests/removal/again.py $(NUMBER)
+
+check-geometry: .venv/tested  ## zeros and crossings of random splines, counted again by Sturm and Sylvester: make check-geometry NUMBER=100000
+	$(BIN)/python tests/sylvester.py $(NUMBER)
 
 methods: .venv/tested  ## race all methods of knot insertion; docs/figures/insertion_study.py draws the result
 	$(BIN)/python benchmarks/methods.py

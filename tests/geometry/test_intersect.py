@@ -14,6 +14,7 @@ import knotwork as kw
 import strategies as kinds
 import sylvester
 from knotwork.errors import ParameterError, PointError
+from knotwork.geometry import meetings
 
 F = Fraction
 W = math.sqrt(0.5)
@@ -265,9 +266,16 @@ def test_no_self_crossing_at_cusps_corners_and_points():
     assert len(kw.intersect(kw.curve([[1.0, 1]] * 4)).a) == 0
 
 
-def test_many_self_crossings_of_a_drawing_take_few_pairs():
-    """A spiral, and strokes across it: as many crossings as they have, and no pair of pieces that are far apart."""
-    u = np.linspace(0, 40 * math.pi, 1000)
+def test_self_crossings_of_many_pieces_take_few_pairs(monkeypatch):
+    looked_at = []
+    apart = meetings._far
+    monkeypatch.setattr(meetings, "_far", lambda pairs, near: looked_at.append(len(pairs.kind)) or apart(pairs, near))
+    walk = kw.curve(np.random.default_rng(0).standard_normal((1003, 2)).cumsum(axis=0))
+    found = kw.intersect(walk)
+    assert found.multiplicity.tolist() == [1] * len(found.a)
+    assert len(found.a) > 300
+    assert sum(looked_at) < 20 * 1000
+    u = np.linspace(0, 40 * math.pi, 300)
     spiral = kw.interpolate(np.stack([u * np.cos(u), u * np.sin(u)], axis=1))
     assert len(kw.intersect(spiral).a) == 0
     found = kw.intersect(spiral, line((-200, 0.5), (200, 0.5)))

@@ -72,7 +72,9 @@ def gathered(
             places = _joined([_at_start(x, r, side.breaks[k]) for x in places])
     places = [x for x in places if not _absorbed(x, runs)]
     if itself:
-        places = _joined([_turned(x) if x.box[0] > x.box[1] else x for x in places])
+        places = [_turned(x) if x.box[0] > x.box[1] else x for x in places]
+        t, ring = first.breaks[0], closed(first, 0)
+        places = _joined([x for x in places if not _one_point(x.box, (t[0], t[-1]) if ring else None)])
     return _crossings(places, _continued(runs, first, second), first, p, shift)
 
 
@@ -144,6 +146,12 @@ def _at_start(x: _Place, r: int, t: Array) -> _Place:
     box = list(x.box)
     box[r] = (t[0], t[0])
     return x._replace(box=tuple(box))
+
+
+def _one_point(box: tuple[tuple[Any, Any], ...], seam: tuple[Any, Any] | None) -> bool:
+    """Tell whether a place of a curve with itself is about one point of it, as at a cusp."""
+    (a, b), (c, d) = box
+    return bool(c <= b or (seam and (a, d) == seam))
 
 
 def _turned(x: _Place) -> _Place:

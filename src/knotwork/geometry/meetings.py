@@ -154,9 +154,10 @@ def _far(pairs: Pairs, tolerance: float) -> Array:
         (p.min(axis=1) - q.max(axis=1) > near[:, None]) | (q.min(axis=1) - p.max(axis=1) > near[:, None])
     ).any(axis=1)
     far &= pairs.kind == APART
-    own = np.flatnonzero(pairs.kind != APART)
-    if len(own):
-        far[own] = _onward(np.concatenate([p[own], q[own][:, 1:]], axis=1), off[own])
+    same, following = (np.flatnonzero(pairs.kind == kind) for kind in (SAME, NEXT))
+    far[same] = _onward(p[same], off[same])
+    if len(following):
+        far[following] = _onward(np.concatenate([p[following], q[following][:, 1:]], axis=1), off[following])
     left = np.flatnonzero(~far & (pairs.kind == APART))
     p, q, near = p[left], q[left], near[left]
     u = (q.mean(axis=1) - p.mean(axis=1))[:, :, None]
