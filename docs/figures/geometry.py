@@ -42,6 +42,30 @@ def mesh():
     save(figure, "mesh.png", dpi=130)
 
 
+def crossings():
+    """Draw where curves cross, touch and run along each other, and where one crosses itself."""
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(9, 3.2), layout="constrained")
+    u = np.linspace(0, 1, 400)
+    a = kw.curve([[0, 0], [1, 3], [2, -2], [4, 3], [5, 0], [6, 1]])
+    b = kw.curve([[0, 1.1], [2, -0.6], [3, 2], [6, 0]])
+    _met(left, a, b, u)
+    arch = kw.curve([[-1.25, 1.5625], [0, -1.5625], [1.25, 1.5625]], 2)  # y = x²
+    _met(middle, arch, kw.curve([[-1, -1], [-1 / 3, 1], [1 / 3, -1], [1, 1]]), u)  # y = x³: touches at 0, meets at 1
+    _met(right, kw.curve(np.random.default_rng(5).standard_normal((9, 2)), 3, periodic=True), None, u)
+    save(figure, "crossings.png", dpi=110)
+
+
+def _met(axes, a, b, u):
+    found = kw.intersect(a, b)
+    for c, width in ((a, 1.2), (b, 1.2)):
+        if c is not None:
+            axes.plot(*c(c.space.domain[0] + u * np.subtract(*c.space.domain[::-1])).T, color=INK, lw=width)
+    cross = found.multiplicity == 1
+    axes.plot(*found.points[cross].T, "o", color=KNOT)
+    axes.plot(*found.points[~cross].T, "s", color=KNOT)
+    axes.set_aspect("equal", adjustable="datalim")
+
+
 def main():
     """Draw zeros of a function, and what is found on a curve."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
@@ -65,4 +89,5 @@ def main():
 
 if __name__ == "__main__":
     main()
+    crossings()
     mesh()
