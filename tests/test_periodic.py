@@ -69,6 +69,15 @@ def test_a_new_knot_too_close_is_refused():
     assert right.space.domain == (near, 4)
 
 
+def test_a_reduced_period_can_be_made_again():
+    """With fewer knots the period reaches farther around the seam, and knots may then be too close for floats."""
+    knots = [1, 1, 1.00146484375, 1.00146484375, 1.0014649033546448, 1.001464907079935, 1.001464907079935]
+    space = SplineSpace(1, [*knots, 1.017089907079935, *[1.017150942236185] * 2, 5.017150942236185], periodic=True)
+    for c in ([-1, 0, 5, 9, -9, -7, 6, 9, -5, -4], [8, 4, 4, 6, -5, -3, -6, -9, -1, 1]):
+        left = kw.reduce(Spline(space, np.array(c)[:, None] / 8), 0.5).spline.space
+        assert SplineSpace(1, left.knots, periodic=True) == left
+
+
 # ---- random periods -------------------------------------------------------------------------------------------------
 
 

@@ -129,6 +129,15 @@ def reach(knots: Array, degree: int) -> float:
     return most
 
 
+def goes_around(knots: Array, degree: int) -> bool:
+    """Tell whether the knots of a period can be continued around the seam: with fewer knots it reaches farther."""
+    try:
+        require_apart(knots, reach(knots, degree))
+    except KnotError:
+        return False
+    return True
+
+
 def require_apart(knots: Array, most: float) -> None:
     """Raise unless distinct knots of a period of this reach are far enough apart to be continued around the seam."""
     if knots.dtype == object:

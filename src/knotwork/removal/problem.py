@@ -15,6 +15,7 @@ from knotwork.removal.ranking import ranked
 from knotwork.removal.tolerance import Tolerance
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
+from knotwork.unrolled import goes_around
 
 
 class Trial(NamedTuple):
@@ -109,7 +110,10 @@ class Original:
         return 2**64 / size if size > 0 else 1
 
     def admits(self, trial: Trial) -> bool:
-        """Tell whether a fit keeps the tolerance, or what it changed is explained by rounding."""
+        """Tell whether a fit keeps the tolerance, or changes only what rounding explains; and its period closes."""
+        space = trial.spline.spaces[self.axis]
+        if space.periodic and not goes_around(space.knots, space.degree):
+            return False
         explained = (trial.found <= self.floor) & (trial.bound <= 32 * self.floor)
         return bool(((trial.bound <= self.tolerance.given) | explained).all())
 

@@ -126,7 +126,7 @@ class Scaled:
         """Return the spline whose period starts at another knot than the original's."""
         o, t = self.original, self.data.t
         end = t[-1] + (t[kept[0]] - t[0])
-        moved = o.spline.with_axis(0, SplineSpace(o.space.degree, np.append(t[kept], end), periodic=True), c)
+        moved = o.spline.with_axis(0, SplineSpace.trusted(o.space.degree, np.append(t[kept], end), True), c)
         seam = refine(moved, 0, t[-1:])
         back = np.roll(seam.coefficients, 1, axis=0)  # the seam was the last knot of the moved period
         with_seam = mask.copy()

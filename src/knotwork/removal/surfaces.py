@@ -29,6 +29,7 @@ from knotwork.removal.result import Progress, Reduction
 from knotwork.removal.tolerance import Tolerance
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
+from knotwork.unrolled import goes_around
 
 #: by what the lines are ordered: None, the largest error that is left; (p, q), what goes to the sum of the errors to
 #: the power 2p, times the number of lines to the power q, as one of many saves few points
@@ -134,7 +135,9 @@ class Judge:
         return self.tolerance.reported(fit.bound)
 
     def admits(self, fit: Judged) -> bool:
-        """Tell whether a fit keeps the tolerance, or what it changed is explained by rounding."""
+        """Tell whether a fit keeps the tolerance, or changes only what rounding explains; and its periods close."""
+        if not all(goes_around(each.knots, each.degree) for each in fit.spline.spaces if each.periodic):
+            return False
         return bool(((fit.bound <= self.tolerance.given) | (fit.found <= self.floor)).all())
 
 
