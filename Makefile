@@ -42,6 +42,9 @@ lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src
 bench: .venv/tested  ## race this library and the peers that are installed
 	$(BIN)/python benchmarks/peers.py
 
+bench-fonts: .venv/tested  ## points of glyphs beside cu2qu and qu2cu
+	$(BIN)/python benchmarks/fonts.py
+
 bench-removal: .venv/tested  ## control points that `reduce` leaves, and its time, beside peers
 	$(BIN)/python benchmarks/removal.py
 	$(BIN)/python benchmarks/removal_surfaces.py

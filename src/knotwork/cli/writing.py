@@ -22,6 +22,8 @@ INCHES = terminal.Size(0.1, 1000)
 @main.command(short_help="Convert between file formats.")
 @click.argument("files", type=FILE, nargs=-1, required=True)
 @click.option("--accuracy", type=float, help="Largest error, in the units of the points, if the format is not exact.")
+@click.option("--quadratic/--cubic", default=None, help="Of a font: which outlines it is to have.")
+@click.option("-t", "--tolerance", type=terminal.tolerance, help="Of a font: largest error, in its units or %.")
 @flip
 @reading
 @click.option("--to", metavar="SUFFIX", help="Format of what goes to standard output, such as json.")
@@ -30,6 +32,8 @@ INCHES = terminal.Size(0.1, 1000)
 def convert(
     files: Sequence[Path],
     accuracy: float | None,
+    quadratic: bool | None,
+    tolerance: terminal.Tolerance | None,
     flip: bool,
     reading: Reading,
     to: str | None,
@@ -44,9 +48,15 @@ def convert(
     Examples:
       knotwork convert drawing.svg -o drawing.json
       knotwork convert - --format csv --to svg -o -
+      knotwork convert Font.otf --quadratic -t 1 -o out.ttf
     """
     from knotwork.geometry.boxes import upside_down
 
+    if quadratic is not None or tolerance is not None:
+        if quadratic is None or tolerance is None or len(files) != 1:
+            raise click.UsageError("expected one font, --quadratic or --cubic, and --tolerance")
+        _convert_font(files[0], output, reading, tolerance, not quadratic, as_json)
+        return
     if output != STREAM:
         require_writable(output)
     from knotwork.files.formats import encoded
@@ -63,6 +73,36 @@ def convert(
     else:
         text = f"{report.counted(len(splines), 'spline')} written to {output}{report.error_of(bound)}"
         click.echo(text, err=quiet)
+
+
+def _convert_font(
+    file: Path, output: Path, reading: Reading, tolerance: terminal.Tolerance, cubic: bool, as_json: bool
+) -> None:
+    """Write a font with outlines of the other kind."""
+    from knotwork.files.fonts.conversion import converted_font
+    from knotwork.files.fonts.lighter import require_font
+
+    if output != STREAM:
+        require_writable(output, [".otf" if cubic else ".ttf"])
+    document = reading.document(file)
+    units = require_font(document).units
+    allowed = tolerance.value * units if tolerance.relative else tolerance.value
+    found = converted_font(document, allowed, cubic=cubic)
+    save(output, found.data)
+    before, after = found.points
+    if as_json:
+        told = {"input": str(file), "output": str(output), "tolerance": allowed, "bound": found.bound}
+        told |= {"glyphs": found.glyphs, "points": [before, after], "bytes": [document.size, len(found.data)]}
+        click.echo(report.as_json(told), err=output == STREAM)
+        return
+    text = (
+        f"{file}: {report.counted(found.glyphs, 'glyph')} of {units} units per em, tolerance {allowed:.6g}\n"
+        f"{before:,} {'quadratic' if cubic else 'cubic'} → {after:,} {'cubic' if cubic else 'quadratic'} points, "
+        f"{document.size:,} → {len(found.data):,} bytes; hints or instructions are dropped\n"
+        f"no point is farther than {report.upward(found.bound):.6g} from where it was: proven, rounding included\n"
+        f"written to {output}"
+    )
+    click.echo(text, err=output == STREAM)
 
 
 @main.command(short_help="Draw splines.")

@@ -61,7 +61,7 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
         width = shown[name].width
         pen = T2CharStringPen(None if width == private.defaultWidthX else width - private.nominalWidthX, None)
         for i, commands in enumerate(_contours(given.value)):
-            _draw(pen, contours[i]) if i in contours else _replay(pen, commands)
+            draw(pen, contours[i]) if i in contours else _replay(pen, commands)
             boxes += [_around(contours[i])] if i in contours else []
         new = pen.getCharString(private, old.globalSubrs)
         new.compile()
@@ -86,7 +86,7 @@ def _replay(pen: Any, commands: list[tuple[str, Any]]) -> None:
         getattr(pen, what)(*points)
 
 
-def _draw(pen: Any, runs: list[Array]) -> None:
+def draw(pen: Any, runs: list[Array]) -> None:
     """Draw a contour; its last line is implied by its end."""
     pen.moveTo(_point(runs[0][0]))
     for k, run in enumerate(runs):

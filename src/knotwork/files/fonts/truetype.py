@@ -119,21 +119,33 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
 
 def _with(glyph: Any, contours: Mapping[int, list[Array]]) -> Any:
     """Return a glyph with some contours replaced, without instructions."""
+    found = _written([_listed(contours[i]) if i in contours else given for i, given in enumerate(_points(glyph))])
+    found.flags[0] |= glyph.flags[0] & _OVERLAP
+    return found
+
+
+def glyph(contours: list[list[Array]]) -> Any:
+    """Return a glyph of contours."""
+    return _written([_listed(runs) for runs in contours])
+
+
+def _written(contours: list[tuple[Array, list[bool]]]) -> Any:
+    """Return a glyph of points and whether they are on the curve."""
     from fontTools.ttLib.tables import ttProgram
     from fontTools.ttLib.tables._g_l_y_f import Glyph as Written
     from fontTools.ttLib.tables._g_l_y_f import GlyphCoordinates
 
+    found = Written()
+    if not contours:
+        found.numberOfContours = 0
+        return found
     points: list[tuple[int, int]] = []
     flags = bytearray()
     ends = []
-    for i, (given, on) in enumerate(_points(glyph)):
-        rows, marks = _listed(contours[i]) if i in contours else (given, on)
+    for rows, marks in contours:
         points += [(int(x), int(y)) for x, y in rows]
         flags += bytes(map(int, marks))
         ends.append(len(points) - 1)
-    if flags:
-        flags[0] |= glyph.flags[0] & _OVERLAP
-    found = Written()
     found.numberOfContours, found.endPtsOfContours = len(ends), ends
     found.coordinates, found.flags = GlyphCoordinates(points), flags
     found.program = ttProgram.Program()
