@@ -13,7 +13,7 @@ import knotwork as kw
 from knotwork.cli import report, terminal
 from knotwork.cli.jobs import Job, job, written_to
 from knotwork.cli.program import flip, main
-from knotwork.cli.streams import STREAM, save
+from knotwork.cli.streams import STREAM, paired, save
 from knotwork.cli.terminal import Tolerance, compiling
 
 #: formats that are written in place with few segments, and what these are
@@ -39,6 +39,7 @@ IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 @click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
 @click.option("--precision", type=click.IntRange(-6, 17), help="Digits after the point in a drawing.")
 @click.option("--shared-borders", is_flag=True, help="Borders that areas of a map share stay shared.")
+@click.option("--together", is_flag=True, help="Files are masters of one family of fonts: points stay the same in all.")
 @flip
 def reduce(
     job: Job,
@@ -51,6 +52,7 @@ def reduce(
     even_if_longer: bool,
     precision: int | None,
     shared_borders: bool,
+    together: bool,
     flip: bool,
 ) -> None:
     """Find splines with few knots within a tolerance of those of FILE.
@@ -69,6 +71,7 @@ def reduce(
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
       knotwork reduce countries.geojson --shared-borders -t 0.05 -o small.geojson
       knotwork reduce Font.otf --glyphs a,b,U+0041 -t 1 -o out.otf
+      knotwork reduce Light.otf Bold.otf --together -t 1 -o masters/
     """
 
     from knotwork.files.formats import format_of
@@ -101,6 +104,9 @@ def reduce(
 
         return job.one(file, output, change, tolerance, "reducing", even_if_longer=even_if_longer)
 
+    if together:
+        _masters(job, tolerance, features)
+        return
     job.each(work)
 
 
@@ -168,3 +174,29 @@ def _font(
     job.echo(f"no point is farther than {report.upward(found.bound):.6g} from where it was: proven, rounding included")
     job.echo(written_to(output, 0.0))
     return None
+
+
+def _masters(job: Job, tolerance: Tolerance, keep: Sequence[str]) -> None:
+    """Reduce fonts together, and say what became of them."""
+    from knotwork.files.fonts.lighter import require_font
+    from knotwork.files.fonts.masters import lighter_masters
+    from knotwork.removal.outlines import KEPT
+
+    pairs = paired(job.files, job.output, job.in_place)
+    documents = [job.reading.document(file) for file, _ in pairs]
+    units = min(require_font(document).units for document in documents)
+    allowed = tolerance.value * units if tolerance.relative else tolerance.value
+    found = lighter_masters(documents, allowed, keep=keep or KEPT)
+    ready = [document.packed(file)[0] for document, (file, _) in zip(found.documents, pairs, strict=True)]
+    for data, (_, output) in zip(ready, pairs, strict=True):
+        if output:
+            save(output, data)
+    before, after = found.points
+    if job.as_json:
+        told = {"inputs": [str(file) for file, _ in pairs], "tolerance": allowed, "bound": found.bound}
+        job.echo(report.as_json(told | {"points": [before, after], "different": found.different}))
+        return
+    job.echo(f"{len(pairs)} masters, tolerance {allowed:.6g} over all of them together")
+    job.echo(f"{before:,} → {after:,} points in each; {report.counted(found.different, 'contour')} differ and stay")
+    job.echo(f"no point of a master, or between them, is farther than {report.upward(found.bound):.6g}: proven")
+    job.echo(f"written to {job.output}" if job.output else "in place" if job.in_place else written_to(None, 0.0))

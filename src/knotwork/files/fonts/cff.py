@@ -63,13 +63,20 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
         for i, commands in enumerate(_contours(given.value)):
             draw(pen, contours[i]) if i in contours else _replay(pen, commands)
             boxes += [_around(contours[i])] if i in contours else []
-        new = pen.getCharString(private, old.globalSubrs)
-        new.compile()
-        strings[name] = new
+        strings[name] = string(pen, private, old.globalSubrs)
     if boxes and hasattr(top, "FontBBox"):
         low, high = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
         top.FontBBox = [*map(int, np.floor(low)), *map(int, np.ceil(high))]
     return with_tables(data, {"CFF ": font["CFF "].compile(font)})
+
+
+def string(pen: Any, private: Any = None, subroutines: Any = None) -> Any:
+    """Return the char string that a pen drew, short, but with all its points: masters keep the same ones."""
+    from fontTools.cffLib.specializer import specializeProgram
+
+    found = pen.getCharString(private, subroutines, optimize=False)
+    found.program = specializeProgram(found.program, preserveTopology=True, maxstack=48)
+    return found
 
 
 def _contours(commands: list[tuple[str, Any]]) -> list[list[tuple[str, Any]]]:

@@ -11,7 +11,6 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.svg.drawing import pieces_of
-from knotwork.files.svg.inplace import from_line
 from knotwork.geometry.bezier import joined, raised
 from knotwork.geometry.lengths import increasing
 from knotwork.knots import multiplicities
@@ -113,9 +112,10 @@ def rounded(spline: Spline, cubic: bool, name: str) -> Rounded:
 
 
 def _runs(nets: Array, cubic: bool) -> list[Array]:
-    """Return a run for each piece; straight ones become lines."""
+    """Return a run for each piece; lines are those whose handles divide them evenly, as raising the degree does."""
     full = raised(nets, 3 if cubic else 2)
-    straight = [from_line(net) <= IMPLIED for net in nets]
+    lines = raised(nets[:, [0, -1]], 3 if cubic else 2)
+    straight = (np.abs(full - lines) <= IMPLIED).all(axis=(1, 2))
     return [net[[0, -1]] if line else net for net, line in zip(full, straight, strict=True)]
 
 

@@ -151,7 +151,7 @@ def _with_cff(font: Any, made: dict[str, list[list[Array]]]) -> bytes:
         pen = T2CharStringPen(font["hmtx"].metrics[name][0], None)
         for runs in contours:
             cff.draw(pen, runs)
-        strings[name] = pen.getCharString()
+        strings[name] = cff.string(pen)
     names = font["name"]
     script = names.getDebugName(6) or "Font"
     told = {"FullName": names.getDebugName(4), "FamilyName": names.getDebugName(1), "Notice": names.getDebugName(0)}
