@@ -75,8 +75,9 @@ def reduce_shapes(
 ) -> list[Reduction]:
     """Return cubic pieces that join for many curves at once, each as it would be alone, bit for bit.
 
-    What makes a search for one curve slow is to prepare it; so curves are searched together that differ in nothing
-    that the search sees: dimension, degree, and by which power of two they are scaled.
+    Left out are the matchings and the lower bounds, which take as long as the search. What makes a search for one
+    curve slow is to prepare it; so curves are searched together that differ in nothing that the search sees: dimension,
+    degree, and by which power of two they are scaled.
 
     Raises
     ------
@@ -99,7 +100,9 @@ def reduce_shapes(
             lines=features[0][1], keep=joints, effort=effort, crossings=crossings, rational=rational,
         )  # fmt: skip
         for k, i in enumerate(some):
-            found[i] = _made(ready[i], pieces[i], result, k, tolerance, closed[k], effort)
+            spline = _joined(ready[i], result, k, closed[k])
+            made = ready[i] if spline is None else spline
+            found[i] = Reduction(made, float(result.bound[k]), "geometric", effort=effort)
     return [found[i] for i in range(len(curves))]
 
 
@@ -120,20 +123,25 @@ def _bezier(
 
 
 def _made(curve: Spline, pieces: Array, found: Pieces, k: int, allowed: Any, closed: bool, effort: str) -> Reduction:
-    """Return what was found for curve k as a reduction."""
-    rational, each = curve.rational, np.ndim(allowed) == 1
-    floor = _lower_bound(pieces, allowed, closed, rational, 3)
-    low = 3 * floor + (not closed)
-    own = found.nets[found.at[k] : found.at[k + 1]]
-    if not len(own):
+    """Return what was found for curve k as a reduction, with its matching and a lower bound."""
+    each = np.ndim(allowed) == 1
+    low = 3 * _lower_bound(pieces, allowed, closed, curve.rational, 3) + (not closed)
+    spline = _joined(curve, found, k, closed)
+    if spline is None:
         return _itself(curve, effort, low, each)
-    new = own[..., :-1] / own[..., -1:] if rational else own
-    t = breaks_by_length(new, curve.space.domain, closed)
-    spline = joined(new, t, closed and curve.space.periodic)
     path = slice(found.path[k], found.path[k + 1])
     matching = Matching(found.s[path] + found.start[k], found.u[path], closed)
     bound = float(found.bound[k]) if not each else found.bound[k] * np.asarray(allowed)
     return Reduction(spline, bound, "geometric", (), low, None, matching, effort)
+
+
+def _joined(curve: Spline, found: Pieces, k: int, closed: bool) -> Spline | None:
+    """Return the curve of the pieces that were found for curve k; None if it is its own answer."""
+    own = found.nets[found.at[k] : found.at[k + 1]]
+    if not len(own):
+        return None
+    new = own[..., :-1] / own[..., -1:] if curve.rational else own
+    return joined(new, breaks_by_length(new, curve.space.domain, closed), closed and curve.space.periodic)
 
 
 def _itself(curve: Spline, effort: str, low: int, each: bool) -> Reduction:
