@@ -165,6 +165,13 @@ def test_a_surface_is_told() -> None:
         dxf.encode([tensor(None, 2)], None)
 
 
+def test_what_is_repaired_is_told() -> None:
+    text = dxf.encode([planar(6)], None)[0].replace(b" 40\n0.0\n", b" 40\n0.0x\n", 1)
+    told: list[str] = []
+    assert len(dxf.decode(text, told.append)) == 1
+    assert any("fault(s) of this drawing are repaired; the first: recovered invalid floating point" in t for t in told)
+
+
 @given(st.data())
 def test_damaged_drawings_are_told_or_read(data: st.DataObject) -> None:
     text = bytearray(dxf.encode([planar(6)], None)[0])

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -28,9 +30,35 @@ def opened(data: bytes, remark: Callable[[str], None]) -> Model:
 
 def _read(data: bytes, remark: Callable[[str], None]) -> list[Shape]:
     remarks = Remarks(remark)
-    shapes = Reader(_drawing(data), remarks).shapes()
+    with _repairs(remark):
+        drawing = _drawing(data)
+    shapes = Reader(drawing, remarks).shapes()
     remarks.close()
     return shapes
+
+
+class _Told(logging.Handler):
+    """Keeps what ezdxf says about damage that it repairs."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.texts: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.texts.append(record.getMessage())
+
+
+@contextmanager
+def _repairs(remark: Callable[[str], None]) -> Iterator[None]:
+    """Remark what is repaired in a damaged drawing."""
+    told, logger = _Told(), logging.getLogger("ezdxf")
+    logger.addHandler(told)
+    try:
+        yield
+    finally:
+        logger.removeHandler(told)
+    if told.texts:
+        remark(f"{len(told.texts)} fault(s) of this drawing are repaired; the first: {told.texts[0]}")
 
 
 def _drawing(data: bytes) -> Any:
