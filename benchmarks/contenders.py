@@ -57,6 +57,26 @@ class Knotwork:
     def reduce(t, n, P, tolerance):
         return kw.reduce(kw.curve(P, n, t), tolerance).spline.points
 
+    @staticmethod
+    def zeros(t, n, c):
+        return kw.zeros(kw.curve(c, n, t)).values
+
+    @staticmethod
+    def intersect(a, b):
+        return kw.intersect(kw.curve(*a), kw.curve(*b)).points
+
+    @staticmethod
+    def closest(t, n, P, points):
+        return kw.closest(kw.curve(P, n, t), points).parameters
+
+    @staticmethod
+    def flatten(t, n, P, tolerance):
+        return kw.flatten(kw.curve(P, n, t), tolerance).points
+
+    @staticmethod
+    def distance(a, b):
+        return kw.distance(kw.curve(*a), kw.curve(*b)).hausdorff
+
 
 class Scipy:
     """scipy.interpolate."""
@@ -91,6 +111,51 @@ class Scipy:
         from scipy.interpolate import BSpline, PPoly
 
         return [PPoly.from_spline(BSpline(t, np.ascontiguousarray(x), n)).c for x in P.T]
+
+    @staticmethod
+    def zeros(t, n, c):
+        from scipy.interpolate import PPoly
+
+        return PPoly.from_spline((t, c, n)).roots(extrapolate=False)
+
+
+class Bezier:
+    """bezier: single Bézier curves."""
+
+    @staticmethod
+    def intersect(a, b):
+        if len(a[0]) != a[1] + 1 or len(b[0]) != b[1] + 1:
+            return None
+        from bezier import Curve
+
+        one, two = (Curve(np.asfortranarray(P.T), n) for P, n, _ in (a, b))
+        return one.intersect(two)
+
+
+class Shapely:
+    """shapely: of polylines of 16 points an interval, as one would give it curves; nothing is said of the curves."""
+
+    @staticmethod
+    def _line(P, n, t):
+        from shapely import LineString
+
+        breaks = np.unique(t)
+        u = (breaks[:-1, None] + np.arange(16) / 16 * np.diff(breaks)[:, None]).ravel()
+        return LineString(kw.curve(P, n, t)(np.append(u, breaks[-1])))
+
+    @staticmethod
+    def intersect(a, b):
+        return Shapely._line(*a).intersection(Shapely._line(*b))
+
+    @staticmethod
+    def closest(t, n, P, points):
+        import shapely
+
+        return shapely.line_locate_point(Shapely._line(P, n, t), shapely.points(points))
+
+    @staticmethod
+    def distance(a, b):
+        return Shapely._line(*a).hausdorff_distance(Shapely._line(*b))
 
 
 class Pantr:
@@ -176,7 +241,14 @@ class Geomdl:
         return operations.insert_knot(curve, [float(new)], [1]).ctrlpts
 
 
-PEERS = {"scipy": Scipy, "pantr": Pantr, "splipy": Splipy, "geomdl": Geomdl}
+PEERS = {
+    "scipy": Scipy,
+    "pantr": Pantr,
+    "splipy": Splipy,
+    "geomdl": Geomdl,
+    "bezier": Bezier,
+    "shapely": Shapely,
+}
 
 
 def installed() -> dict[str, type]:

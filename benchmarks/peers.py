@@ -58,10 +58,31 @@ def tasks():
     x = np.linspace(0, 1, 1000)
     smooth = np.stack([np.sin(9 * x), np.cos(7 * x) * x, x**2], axis=1)
     yield "reduce 1000 to 1e-3", None, "reduce", (t, 3, smooth, 1e-3), None
+    yield from geometry()
     for n, m, goal in ((100, 100, 300), (1000, 1000, 50_000)):
         t, _ = cubic(n)
         net = np.random.default_rng(3).random((n, n, 3))
         yield f"bicubic {n}² + {m} + {m}", goal, "surface", (t, 3, net, new_knots(m)), None
+
+
+def geometry():
+    """Yield tasks of geometry, in the plane."""
+    rng = np.random.default_rng(4)
+    t = kw.SplineSpace.clamped(3, 1000).knots
+    wave = np.sin(np.linspace(0.01, 100 * np.pi, 1000)) + 0.01 * rng.standard_normal(1000)
+    yield "zeros, n = 1000, 100 of them", None, "zeros", (t, 3, wave), None
+    for n in (4, 100, 1000):
+        space = kw.SplineSpace.clamped(3, n).knots
+        polygons = [rng.standard_normal((n, 2)).cumsum(axis=0) for _ in range(2)]
+        if n == 4:  # two waves: three crossings
+            polygons = np.array([[[0, 0], [1, 3], [2, -3], [3, 0]], [[0, 1], [1, -3], [2, 3], [3, -1]]], float)
+        yield f"intersect {n} with {n}", None, "intersect", tuple((P, 3, space) for P in polygons), None
+    t = kw.SplineSpace.clamped(3, 100).knots
+    P = rng.random((100, 2)).cumsum(axis=0)
+    yield "closest to 10,000 points, n = 100", None, "closest", (t, 3, P, 50 * rng.random((10_000, 2))), 10_000
+    yield "flatten to 1e-3, n = 100", None, "flatten", (t, 3, P, 1e-3), None
+    near = P + 0.01 * rng.standard_normal(P.shape)
+    yield "distance, n = 100", None, "distance", ((P, 3, t), (near, 3, t)), None
 
 
 def timed(run, arguments, calls):
@@ -125,6 +146,11 @@ def import_ratio():
     return statistics.median(found["knotwork"]) / statistics.median(found["numpy"])
 
 
+def _ratio(x):
+    """Return a ratio with one digit after the point, small ones with two digits."""
+    return f"{x:.1f}" if x >= 0.95 else f"{x:.2g}"
+
+
 def readable(microseconds):
     """Return a time in µs or ms."""
     return f"{microseconds:.1f} µs" if microseconds < 1000 else f"{microseconds / 1000:.2f} ms"
@@ -152,7 +178,7 @@ def main():
         found = race(runs, arguments, options.quick)
         ours = found.pop("knotwork")
         per_row = f"{1000 * ours / rows:.1f} ns" if rows else ""
-        ratios = "  ".join(f"{peer} {time / ours:.1f}" for peer, time in sorted(found.items(), key=lambda x: x[1]))
+        ratios = "  ".join(f"{peer} {_ratio(time / ours)}" for peer, time in sorted(found.items(), key=lambda x: x[1]))
         mark = "" if goal is None else readable(goal)
         print(f"{name:46}{mark:>10}{readable(ours):>11}{per_row:>10}   {ratios}", flush=True)
     if not options.only:
