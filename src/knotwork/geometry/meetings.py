@@ -110,8 +110,9 @@ def search(pairs: Pairs, tolerance: float) -> tuple[Meetings, list[Stretch]]:
             break
         pairs = pairs.taken(~_far(pairs, tolerance))
         solved, rest = _crossing(pairs, tolerance)
-        found.append(solved)
-        pairs = pairs.taken(rest)
+        if not rest.all():
+            found.append(solved)
+            pairs = pairs.taken(rest)
         count = np.bincount(pairs.given, minlength=len(given.kind))
         if r == 2:
             for k in np.flatnonzero((count > MANY) & ~compared).tolist():
@@ -123,8 +124,10 @@ def search(pairs: Pairs, tolerance: float) -> tuple[Meetings, list[Stretch]]:
                     stretches.append(stretch)
                     pairs = Pairs.joined([pairs.taken(pairs.given != k), beside])
         small = _small(pairs, tolerance, count[pairs.given] > MANY // 2) | (count[pairs.given] > TOO_MANY)
-        found.append(_undecided(pairs.taken(small & (pairs.kind == APART))))
-        pairs = _halved(pairs.taken(~small))
+        if small.any():
+            found.append(_undecided(pairs.taken(small & (pairs.kind == APART))))
+            pairs = pairs.taken(~small)
+        pairs = _halved(pairs)
     found.append(_undecided(pairs.taken(pairs.kind == APART)))
     return Meetings.joined(found), stretches
 
