@@ -131,8 +131,8 @@ def test_circles_that_touch():
         assert found.points == pytest.approx(np.array([[1, 0]]))
         assert found.multiplicity.tolist() == [2]
         assert found.change.tolist() == [0]
-    assert len(kw.intersect(circle(), circle(2 + 1e-9)).a) == 0
-    apart = kw.intersect(circle(), circle(2 + 1e-9), tolerance=1e-8)
+    assert len(kw.intersect(circle(), circle(0, 2 + 1e-9)).a) == 0
+    apart = kw.intersect(circle(), circle(0, 2 + 1e-9), tolerance=1e-8)
     assert apart.multiplicity.tolist() == [0]
     assert apart.distances[0] <= 1e-8
 
@@ -360,3 +360,19 @@ def test_what_cannot_meet_in_places_is_refused():
 def test_empty_answers_are_empty_arrays():
     found = kw.intersect(line((0, 0), (1, 0)), line((0, 1), (1, 1)))
     assert [x.shape for x in found] == [(0, 2), (0, 2), (0, 2), (0,), (0,), (0,), (0, 2, 2)]
+
+
+def test_points_that_stand_still_and_curves_drawn_twice():
+    """No search runs on and on; what cannot be told is reported with the multiplicity 0."""
+    spot = kw.intersect(kw.curve([[0.0, 0]] * 6), kw.curve([[0.0, 0]] * 5))
+    assert spot.multiplicity.tolist() == [0]
+    steps = kw.intersect(kw.Spline(kw.SplineSpace(0, [0, 1, 2]), [[0.0, 0], [1, 1]]), line((0, 0), (2, 2)))
+    assert steps.b == pytest.approx(np.array([[0, 0], [0.5, 0.5]]), abs=1e-9)
+    twice = kw.intersect(kw.curve([[0, 0], [2, 0], [0, 0]], 2), line((-1, 0), (2, 0)))  # out to 1 and back
+    reached = [*twice.a.tolist(), *twice.stretches[:, 0].tolist()]
+    assert min(low for low, _ in reached) == 0
+    assert max(high for _, high in reached) == 1
+    flat = kw.surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], degree=1)
+    on = kw.intersect(line((0, 0, 0), (1, 1, 0)), flat)
+    assert on.multiplicity.tolist() == [0]
+    assert on.a.tolist() == [[0, 1]]

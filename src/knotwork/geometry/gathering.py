@@ -13,6 +13,8 @@ from knotwork.geometry.sides import Whole, values
 
 #: how far apart, as a part of the domain, parameters may be where a stretch goes on over a knot
 SEAM = 2.0**-26
+#: a place this part of a piece before a seam, or less, and at it, is told at the start
+NEAR_SEAM = 1 << 16
 
 
 class Crossings(NamedTuple):
@@ -141,7 +143,7 @@ def _one(x: _Place, y: _Place) -> _Place:
 
 def _at_start(x: _Place, r: int, t: Array) -> _Place:
     """Return a place at the end of a period as one at its start."""
-    if x.box[r][1] != t[-1] or x.box[r][0] < t[-2]:
+    if x.box[r][1] != t[-1] or (t[-1] - x.box[r][0]) * NEAR_SEAM > t[-1] - t[-2]:
         return x
     box = list(x.box)
     box[r] = (t[0], t[0])
