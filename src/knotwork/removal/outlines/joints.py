@@ -15,6 +15,8 @@ from knotwork.removal.outlines.runs import Pieces
 KEPT = ("extrema", "corners", "lines")
 #: a joint where the tangent turns by more than this, in degrees, is a corner
 CORNER = 10.0
+#: the sine of the angle to an axis below which a tangent is meant to be along it: whole numbers say no more
+ALONG = 0.02
 
 
 class Joints(NamedTuple):
@@ -47,7 +49,7 @@ def joints(found: Pieces, keep: Collection[str]) -> Joints:
     if "corners" in keep:
         hard |= ((a * b).sum(axis=2) < math.cos(math.radians(CORNER))).any(axis=1)
     if "extrema" in keep:
-        along = [(np.abs(a[..., c]) < AXIS) & (np.abs(b[..., c]) < AXIS) for c in (0, 1)]
+        along = [(np.abs(a[..., c]) < ALONG) & (np.abs(b[..., c]) < ALONG) for c in (0, 1)]
         straight = found.line & np.roll(found.line, 1)
         hard |= (along[0] | along[1]).any(axis=1) & ~straight
     if "lines" in keep:
