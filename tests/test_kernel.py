@@ -305,6 +305,7 @@ def test_plain_and_compiled_agree_on_geometry(both):
     kw.flatten(kw.curve(rng.standard_normal((5, 3))), 0.1)
     kw.flatten(kw.surface(rng.standard_normal((5, 5, 3))), 0.5)
     kw.closest(kw.curve(rng.standard_normal((12, 3))), rng.standard_normal((20, 3)))
+    kw.closest(kw.surface(rng.standard_normal((4, 5, 3)), (2, 3)), rng.standard_normal((4, 3)))
 
 
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone

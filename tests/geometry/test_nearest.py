@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,6 +12,7 @@ from hypothesis import strategies as st
 import knotwork as kw
 import strategies as kinds
 from knotwork.errors import ParameterError, PointError
+from knotwork.geometry import analytic
 
 
 @given(kinds.curves(dtype=float, rational=None, degrees=st.integers(0, 4)), st.integers(0, 99))
@@ -71,5 +74,81 @@ def test_a_single_point_many_points_and_none():
     assert kw.closest(c, np.zeros((0, 2))).parameters.shape == (0,)
     with pytest.raises(PointError, match="expected"):
         kw.closest(c, [1, 2, 3])
-    with pytest.raises(ParameterError, match="curve"):
-        kw.closest(kw.surface(np.zeros((2, 2, 3)), degree=1), [1, 2, 3])
+    with pytest.raises(ParameterError, match="curve or a surface"):
+        kw.closest(kw.volume(np.zeros((2, 2, 2, 3)), degree=1), [1, 2, 3])
+
+
+def test_many_points_are_each_as_alone():
+    """Finer parts, and an order in space, are for speed only."""
+    c = kw.curve(np.random.default_rng(6).random((8, 2)))
+    points = np.random.default_rng(7).random((3000, 2))
+    alone = [kw.closest(c, p).distances.item() for p in points[:40]]
+    assert kw.closest(c, points).distances[:40] == pytest.approx(alone, abs=1e-14)
+
+
+def test_two_feet_that_are_nearly_as_near():
+    """A curve that comes back to within 1e-9 of itself: what is nearer by so little is still found."""
+    c = kw.curve([[0.0, 0], [2, 0], [4, 1e-9], [2, 1e-9], [0, 1e-9]], 4)
+    for u in np.linspace(0, 1, 31):
+        assert kw.closest(c, c(u)).distances <= 1e-15
+
+
+ROOM = analytic.Frame.at([0, 0, 0])
+TURN = [0, 2 * math.pi]
+BALL = analytic.torus(ROOM, 0, 1, TURN, [-math.pi / 2, math.pi / 2])
+RING = analytic.torus(ROOM, 3, 1, TURN, TURN)
+TUBE = analytic.cone(ROOM, 1, 0, TURN, [-2, 2])
+
+
+def test_surfaces_whose_distances_are_known():
+    points = 2 * np.random.default_rng(8).standard_normal((400, 3))
+    x, y, z = points.T
+    r, beyond = np.hypot(x, y), np.maximum(abs(z) - 2, 0)
+    for surface, exact in (
+        (BALL, abs(np.hypot(r, z) - 1)),
+        (RING, abs(np.hypot(r - 3, z) - 1)),
+        (TUBE, np.hypot(r - 1, beyond)),
+    ):
+        found = kw.closest(surface, points)
+        assert found.distances == pytest.approx(exact, abs=1e-13)
+        assert found.bound < 1e-11
+        assert surface(*found.parameters.T) == pytest.approx(found.points, abs=1e-13)
+        assert np.linalg.norm(found.points - points, axis=1) == pytest.approx(found.distances, abs=1e-13)
+
+
+def test_centres_and_axes_from_which_all_is_equally_near():
+    for surface in (BALL, TUBE, RING):
+        found = kw.closest(surface, [[0, 0, 0]])
+        assert found.distances == pytest.approx([1 if surface is not RING else 2], abs=1e-14)
+        assert found.bound < 1e-10
+
+
+@given(st.integers(0, 999), st.tuples(st.integers(0, 3), st.integers(0, 3)), st.booleans(), st.booleans())
+def test_no_sample_of_a_surface_is_nearer(seed, degrees, periodic, rational):
+    rng = np.random.default_rng(seed)
+    shape = [n + 3 for n in degrees]
+    P = rng.integers(-9, 10, (*shape, 3)) / 2
+    weights = rng.integers(1, 9, shape) if rational else None
+    surface = kw.surface(P, degrees, weights=weights, periodic=(periodic, False))
+    points = np.concatenate(
+        [rng.uniform(-6, 6, (4, 3)), surface(rng.random(2) * surface.spaces[0].domain[1], rng.random(2))]
+    )
+    found = kw.closest(surface, points)
+    assert np.linalg.norm(found.points - points, axis=1) == pytest.approx(found.distances, abs=1e-12)
+    u, v = (np.linspace(*map(float, s.domain), 40) for s in surface.spaces)
+    away = np.linalg.norm(surface(u, v, grid=True).reshape(-1, 1, 3) - points, axis=2).min(axis=0)
+    assert (found.distances <= away + found.bound).all()
+    assert found.distances[4:].max() <= 1e-12
+    assert found.bound < 1e-9
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e150])
+def test_sizes_of_surfaces(scale):
+    found = kw.closest(BALL.transform(scale), np.array([[0.0, 3, 4], [0.1, 0, 0]]) * scale)
+    assert found.distances / scale == pytest.approx([4, 0.9], abs=1e-13)
+    assert kw.closest(BALL, np.zeros((0, 3))).parameters.shape == (0, 2)
+    assert kw.closest(BALL, [0, 0, 2.0]).parameters.shape == (2,)
+    with pytest.raises(PointError, match="expected"):
+        kw.closest(BALL, [1, 2])
+    with pytest.raises(PointError, match="nan"):
+        kw.closest(BALL, [1, 2, math.nan])

@@ -110,7 +110,8 @@ def expanded(paths: Sequence[Path]) -> list[Path]:
     found: list[Path] = []
     for path in paths:
         if path != STREAM and path.is_dir():
-            inside = sorted(each for each in path.iterdir() if each.suffix.lower() in SUFFIXES and each.is_file())
+            known = {suffix for suffix, each in SUFFIXES.items() if each.reads}
+            inside = sorted(each for each in path.iterdir() if each.suffix.lower() in known and each.is_file())
             if not inside:
                 raise Failure(f"{path}: no file in this folder has a known suffix")
             found += inside

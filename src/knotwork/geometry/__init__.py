@@ -1,6 +1,7 @@
 """What knot insertion tells of a curve or a surface: boxes, zeros, lengths; all certified by control points."""
 
 from knotwork.geometry.chords import Polyline
+from knotwork.geometry.closest_points import closest
 from knotwork.geometry.crossings import intersect
 from knotwork.geometry.flattening import flatten
 from knotwork.geometry.gathering import Crossings
@@ -8,7 +9,7 @@ from knotwork.geometry.lines import Line, Plane
 from knotwork.geometry.local_shape import curvature, frame, normals
 from knotwork.geometry.measures import Measured, area, by_length, centroid, length
 from knotwork.geometry.meshing import Mesh
-from knotwork.geometry.nearest import Closest, closest
+from knotwork.geometry.nearest import Closest
 from knotwork.geometry.roots import Zeros, zeros
 from knotwork.geometry.turning import corners, extrema, inflections
 

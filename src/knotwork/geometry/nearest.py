@@ -7,27 +7,32 @@ E · (E' w − E w') with E = w (c − p), has coefficients that change sign at 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, real_numbers
-from knotwork.arithmetic.kernel import extent, kernel
+from knotwork.arithmetic.kernel import Kernel, extent, kernel
 from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import PointError
-from knotwork.geometry.bezier import product
-from knotwork.geometry.turning import require_curve
+from knotwork.geometry.bezier import halves, product
+from knotwork.geometry.pieces import unrolling
 from knotwork.insertion.pieces import to_bezier
 from knotwork.spline import Spline
 
-#: halvings of a piece at most, and steps towards a zero
+#: halvings of a part at most, and steps towards a zero
 DEPTH, STEPS = 48, 80
+#: points in a row that are searched one after another, in whichever thread
+BLOCK = 64
+#: the least part of a piece that the search starts from
+FINEST = 1 / 16
 #: unit roundoff of float64
 UNIT = 2.0**-53
 
 
 class Closest(NamedTuple):
-    """The nearest points of a curve to given points.
+    """The nearest points of a curve or surface to given points.
 
     Examples
     --------
@@ -37,25 +42,28 @@ class Closest(NamedTuple):
     ([[1.0, 0.0]], [2.0])
     """
 
-    #: parameters, one for each given point
+    #: one for each given point, or two of a surface
     parameters: Array
-    #: points of the curve there
+    #: points of the curve or surface there
     points: Array
     distances: Array
-    #: no point of the curve is nearer than the distance less this: rounding
+    #: no point of the curve or surface is nearer than the distance less this: rounding
     bound: float
 
 
 class Net(NamedTuple):
-    """Pieces of a curve, homogeneous, and the tree of their boxes: node k has the children 2k and 2k + 1."""
+    """Parts of a curve or surface, homogeneous, and the tree of their boxes: node k has the children 2k and 2k + 1."""
 
     nets: Array
     low: Array
     high: Array
-    #: C(n − 1, i) C(n, j) / C(2n − 1, i + j), and C(n, i) C(2n − 1, j) / C(3n − 1, i + j)
+    #: of a curve C(n − 1, i) C(n, j) / C(2n − 1, i + j), and C(n, i) C(2n − 1, j) / C(3n − 1, i + j); of a surface
+    #: C(n, i) C(n, j) / C(2n, i + j) for each degree
     first: Array
     second: Array
     D: Any
+    #: what rounding may take from a distance
+    allowed: float
 
 
 class Room(NamedTuple):
@@ -68,65 +76,33 @@ class Room(NamedTuple):
     level: Array
     vectors: Array
     nodes: Array
+    #: the place in a part that was found
+    foot: Array
 
 
-def closest(curve: Spline, points: Any) -> Closest:
-    """Return the nearest points of a curve to many points.
-
-    Parameters
-    ----------
-    curve : Spline
-        Real, of one parameter, in d dimensions.
-    points : array_like, shape (…, d)
-
-    Returns
-    -------
-    Closest
-        ``parameters`` and ``distances`` of shape (…), ``points`` of shape (…, d): of several equally near ones, one.
-        ``bound``: the true distance is at most so much smaller. Both sides of a jump belong to the curve.
-
-    Raises
-    ------
-    ParameterError, PointError
-        If it is no real curve, or points are not in d dimensions.
-
-    Examples
-    --------
-    >>> import knotwork as kw
-    >>> near = kw.closest(kw.curve([[0, 0], [1, 2], [2, 0]], 2), [[1, 3], [1, -1]])
-    >>> near.parameters.tolist(), near.distances.tolist()
-    ([0.5, 0.0], [2.0, 1.4142135623730951])
-    """
-    require_curve(curve)
-    P = real_numbers(points, "points", PointError).astype(np.float64)
-    if P.ndim < 1 or P.shape[-1] != curve.dim:
-        raise PointError(f"points of shape {P.shape} given; expected (…, {curve.dim}), as the curve's are")
-    flat = np.ascontiguousarray(P.reshape(-1, curve.dim))
-    homogeneous = Spline.trusted(curve.spaces, curve.homogeneous, True)
-    nets, breaks = to_bezier(homogeneous)
-    nets, breaks = nets.view(np.ndarray).astype(np.float64), breaks.astype(np.float64)
-    size = max(float(abs(curve.hull_bounds).max()), float(abs(flat).max(initial=0.0)))
-    shift = math.frexp(size)[1] if size else 0
-    nets[..., :-1] = np.ldexp(nets[..., :-1], -shift)  # so that squares neither over- nor underflow
-    flat = np.ldexp(flat, -shift)
-    tree = _tree(nets, curve.space.degree)
-    where, distances = np.zeros(len(flat)), np.zeros(len(flat))
+def nearest_on_curve(curve: Spline, points: Any) -> Closest:
+    """Return the nearest points of a curve to many points: what `closest` does for curves."""
+    P, flat, shift, nets, breaks = prepared(curve, points)
     n, d = curve.space.degree, curve.dim
+    parts, piece, start, length = _parts(nets, len(flat))
+    bound = ((60 * (n + 1) + 16) * UNIT + unrolling(curve.space)) * math.sqrt(d) * (1 + curve.rational)
+    tree = box_tree(parts, _curve_weights(n), bound)
 
-    def part(lo: int, hi: int) -> None:
-        room = Room(
+    def room() -> Room:
+        return Room(
             np.empty((DEPTH + 2, n + 1, d + 1)), np.empty((DEPTH + 2, 2)), np.empty((2 * n + 1, d)),
             np.empty(3 * n + 1), np.empty(3 * n + 1), np.empty((n + 1, d + 1)), np.empty(2 * len(tree.low), np.intp),
+            np.empty(1),
         )  # fmt: skip
-        nearest(flat[lo:hi], tree, where[lo:hi], distances[lo:hi], room)
 
-    in_parts(part, len(flat), len(flat) * 1024)
-    k = np.minimum(where.astype(int), len(breaks) - 2)
-    u = breaks[k] + (where - k) * (breaks[k + 1] - breaks[k])
-    feet = _feet(nets, k, where - k)
-    bound = 64 * (n + 1) * UNIT * size * math.sqrt(d) * (1 + curve.rational)
-    shape, distances = P.shape[:-1], np.ldexp(distances, shift)
-    return Closest(u.reshape(shape), np.ldexp(feet, shift).reshape(P.shape), distances.reshape(shape), bound)
+    where, distances = searched(flat, tree, nearest, room, 1)
+    k = where[:, 0].astype(int)
+    t = start[k] + length[k] * where[:, 1]
+    u = breaks[piece[k]] + t * (breaks[piece[k] + 1] - breaks[piece[k]])
+    shape, feet = P.shape[:-1], np.ldexp(_feet(parts, k, where[:, 1]), shift)
+    return Closest(
+        u.reshape(shape), feet.reshape(P.shape), np.ldexp(distances, shift).reshape(shape), math.ldexp(3 * bound, shift)
+    )
 
 
 @kernel
@@ -234,7 +210,7 @@ def zero_of(G, m, level):
 
 @kernel
 def in_piece(p, tree, k, best, room):
-    """Return the nearest place in piece k and the square of its distance, or `best` and −1 if none is nearer."""
+    """Return the square of the distance from part k, its place to room.foot; or `best` if none is nearer."""
     D, n, S, place = tree.D, tree.nets.shape[1] - 1, room.parts, room.place
     last = len(D)
     for i in range(n + 1):
@@ -243,7 +219,7 @@ def in_piece(p, tree, k, best, room):
             S[0, i, c] = tree.nets[k, i, c] - w * p[c]
         S[0, i, last] = w
     place[0, 0], place[0, 1] = 0.0, 1.0
-    found, top = -1.0, 0
+    top = 0
     while top >= 0:
         E = S[top]
         if hull_square(E, n, D) >= best:
@@ -255,30 +231,28 @@ def in_piece(p, tree, k, best, room):
                 y = E[end * n, c] / E[end * n, last]
                 x += y * y
             if x < best:
-                best, found = x, place[top, 0] + end * place[top, 1]
+                best, room.foot[0] = x, place[top, 0] + end * place[top, 1]
         if n == 0:
             top -= 1
             continue
         slope(E, n, tree, room.Q, room.G)
-        m, most = 3 * n - 1, 0.0
-        for i in range(m + 1):
-            most = max(most, abs(room.G[i]))
+        doubt, off = slope_rounding(E, n, D)
         ups = downs = 0
         sign = 0
-        for i in range(m + 1):
-            if abs(room.G[i]) > 16 * UNIT * most:
+        for i in range(3 * n):
+            if abs(room.G[i]) > doubt:
                 now = 1 if room.G[i] > 0 else -1
                 if sign == -1 and now == 1:
                     ups += 1
                 if sign == 1 and now == -1:
                     downs += 1
                 sign = now
-        if ups + downs <= 1 or top >= DEPTH:
+        if (ups + downs <= 1 and off <= tree.allowed * (tree.allowed + math.sqrt(best))) or top >= DEPTH:
             if ups == 1:
-                t = zero_of(room.G, m, room.level)
+                t = zero_of(room.G, 3 * n - 1, room.level)
                 x = square_at(E, n, t, room.vectors, D)
                 if x < best:
-                    best, found = x, place[top, 0] + t * place[top, 1]
+                    best, room.foot[0] = x, place[top, 0] + t * place[top, 1]
             top -= 1
             continue
         half = place[top, 1] / 2
@@ -291,15 +265,39 @@ def in_piece(p, tree, k, best, room):
                 for c in range(last + 1):
                     E[j, c] = (E[j, c] + E[j + 1, c]) / 2
         top += 1
-    return found, best
+    return best
+
+
+@kernel
+def slope_rounding(E, n, D):
+    """Return how far a coefficient of `slope` may be off, and how far, by that, the square of a distance."""
+    last = len(D)
+    far = rise = heavy = change = 0.0
+    least = E[0, last]
+    for i in range(n + 1):
+        heavy, least = max(heavy, E[i, last]), min(least, E[i, last])
+        for c in range(len(D)):
+            far = max(far, abs(E[i, c]))
+        if i < n:
+            change = max(change, abs(E[i + 1, last] - E[i, last]))
+            for c in range(len(D)):
+                rise = max(rise, abs(E[i + 1, c] - E[i, c]))
+    doubt = (6 * n + 16) * UNIT * len(D) * far * (rise * heavy + far * change)
+    return doubt, 2 * n * doubt / (least * least * least)
 
 
 @kernel(inline=False)
 def nearest(points, tree, where, distances, room):
-    """where[i] = piece and part of it that is nearest to point i; distances[i] = how far."""
+    """where[i] = the part that is nearest to point i, and the place in it; distances[i] = how far."""
     leaves = len(tree.low) // 2
     for i in range(len(points)):
         p, best = points[i], math.inf
+        if i % BLOCK > 0:  # what was nearest to the point before is a good guess
+            k = int(where[i - 1, 0])
+            best = in_piece(p, tree, k, best, room)
+            where[i, 0] = k
+            for j in range(len(room.foot)):
+                where[i, j + 1] = room.foot[j]
         room.nodes[0] = 1
         top = 0
         while top >= 0:
@@ -308,9 +306,12 @@ def nearest(points, tree, where, distances, room):
             if box_square(tree, k, p) >= best:
                 continue
             if k >= leaves:
-                found, best = in_piece(p, tree, k - leaves, best, room)
-                if found >= 0:
-                    where[i] = k - leaves + found
+                x = in_piece(p, tree, k - leaves, best, room)
+                if x < best:
+                    best = x
+                    where[i, 0] = k - leaves
+                    for j in range(len(room.foot)):
+                        where[i, j + 1] = room.foot[j]
             else:
                 left, right = 2 * k, 2 * k + 1
                 if box_square(tree, left, p) < box_square(tree, right, p):
@@ -320,12 +321,57 @@ def nearest(points, tree, where, distances, room):
         distances[i] = math.sqrt(best)
 
 
-def _tree(nets: Array, n: int) -> Net:
-    """Return pieces with the boxes of them, of pairs, of pairs of pairs, ….
+def prepared(spline: Spline, points: Any) -> tuple[Array, Array, int, Array, Any]:
+    """Return points as they are shaped, flat ones and nets with coordinates up to 1, the power of two, and breaks."""
+    P = real_numbers(points, "points", PointError).astype(np.float64)
+    if P.ndim < 1 or P.shape[-1] != spline.dim:
+        raise PointError(f"points of shape {P.shape} given; expected (…, {spline.dim}), as the spline's are")
+    flat = np.ascontiguousarray(P.reshape(-1, spline.dim))
+    nets, breaks = to_bezier(Spline.trusted(spline.spaces, spline.homogeneous, True))
+    nets = nets.view(np.ndarray).astype(np.float64)
+    size = max(float(abs(spline.hull_bounds).max()), float(abs(flat).max(initial=0.0)))
+    shift = math.frexp(size)[1] if size else 0
+    nets = np.ldexp(nets, -np.frexp(nets[..., -1].max())[1])
+    nets[..., :-1] = np.ldexp(nets[..., :-1], -shift)  # so that squares neither over- nor underflow
+    return P, np.ldexp(flat, -shift), shift, nets, breaks
 
-    Leaves that are no pieces are infinitely far.
+
+def searched(points: Array, tree: Net, search: Kernel, room: Callable[[], Any], parameters: int) -> tuple[Array, Array]:
+    """Return for each point the part and the places in it that are nearest, and the distance."""
+    order = _neighbours(points)
+    sorted_points = np.ascontiguousarray(points[order])
+    found, far = np.zeros((len(points), parameters + 1)), np.zeros(len(points))
+
+    def part(lo: int, hi: int) -> None:
+        some = slice(BLOCK * lo, BLOCK * hi)
+        search(sorted_points[some], tree, found[some], far[some], room())
+
+    in_parts(part, -(-len(points) // BLOCK), len(points) * 1024)
+    where, distances = np.empty_like(found), np.empty_like(far)
+    where[order], distances[order] = found, far
+    return where, distances
+
+
+def _neighbours(points: Array) -> Array:
+    """Return an order in which points that follow each other are near each other: along Morton's curve."""
+    d = points.shape[1]
+    bits = max(1, min(10, 60 // d))
+    low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+    cells = ((points - low) / np.where(high > low, high - low, 1) * (2**bits - 1)).astype(np.int64)
+    key = np.zeros(len(points), np.int64)
+    for bit in reversed(range(bits)):
+        for c in range(min(d, 60 // bits)):
+            key = 2 * key + ((cells[:, c] >> bit) & 1)
+    order: Array = np.argsort(key, kind="stable")
+    return order
+
+
+def box_tree(nets: Array, weights: tuple[Array, Array], allowed: float) -> Net:
+    """Return parts with the boxes of them, of pairs, of pairs of pairs, ….
+
+    Leaves that are no parts are infinitely far.
     """
-    P = nets[..., :-1] / nets[..., -1:]
+    P = (nets[..., :-1] / nets[..., -1:]).reshape(len(nets), -1, nets.shape[-1] - 1)
     leaves = 1 << max(len(P) - 1, 0).bit_length()
     low, high = np.full((2 * leaves, P.shape[2]), np.inf), np.full((2 * leaves, P.shape[2]), -np.inf)
     low[leaves : leaves + len(P)], high[leaves : leaves + len(P)] = P.min(axis=1), P.max(axis=1)
@@ -334,11 +380,25 @@ def _tree(nets: Array, n: int) -> Net:
         low[half:leaves] = np.minimum(low[leaves : 2 * leaves : 2], low[leaves + 1 : 2 * leaves : 2])
         high[half:leaves] = np.maximum(high[leaves : 2 * leaves : 2], high[leaves + 1 : 2 * leaves : 2])
         leaves = half
-    first, second = (_weights(n - 1, n), _weights(n, 2 * n - 1)) if n else (np.zeros((1, 1)), np.zeros((1, 1)))
-    return Net(np.ascontiguousarray(nets), low, high, first, second, extent(P.shape[2]))
+    return Net(np.ascontiguousarray(nets), low, high, *weights, extent(P.shape[2]), allowed)
 
 
-def _weights(p: int, q: int) -> Array:
+def _parts(nets: Array, points: int) -> tuple[Array, Array, Array, Array]:
+    """Return parts of pieces, finer for many points, with the piece of each, where it starts and how long it is."""
+    piece, start, length = np.arange(len(nets)), np.zeros(len(nets)), 1.0
+    while length > FINEST and 8 * len(nets) < points and nets.shape[1] > 1:
+        nets = np.stack(halves(nets), axis=1).reshape(-1, *nets.shape[1:])
+        length /= 2
+        piece, start = np.repeat(piece, 2), np.repeat(start, 2)
+        start[1::2] += length
+    return nets, piece, start, np.full(len(nets), length)
+
+
+def _curve_weights(n: int) -> tuple[Array, Array]:
+    return (product_weights(n - 1, n), product_weights(n, 2 * n - 1)) if n else (np.zeros((1, 1)), np.zeros((1, 1)))
+
+
+def product_weights(p: int, q: int) -> Array:
     """Return C(p, i) C(q, j) / C(p + q, i + j): the products of unit polynomials."""
     e, f = np.eye(p + 1), np.eye(q + 1)
     return np.array([[product(e[i : i + 1], f[j : j + 1])[0, i + j] for j in range(q + 1)] for i in range(p + 1)])

@@ -15,7 +15,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, real_numbers
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import halves
-from knotwork.geometry.nearest import closest
+from knotwork.geometry.closest_points import closest
 from knotwork.insertion.pieces import to_bezier
 from knotwork.removal.shapes.alignment import coupled
 from knotwork.removal.shapes.between import distance_bound
