@@ -1,8 +1,8 @@
 """The nearest points of a surface, globally: patches that may hold a nearer point are parted, by squared distances.
 
 For a point p and the best square b found so far, G = |A − w p|² − b w² is a polynomial over a patch A / w. Where its
-Bernstein coefficients are not below 0, nothing is nearer. Where those of its second derivatives prove it convex, Newton's
-steps find its least value, and the tangent plane there bounds it from below. Else the patch is halved.
+Bernstein coefficients are not below 0, nothing is nearer. Where those of its second derivatives prove it convex,
+Newton's steps find its least value, and the tangent plane there bounds it from below. Else the patch is halved.
 """
 
 from __future__ import annotations
