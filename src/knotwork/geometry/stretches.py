@@ -9,7 +9,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.geometry.bezier import raised, restricted
-from knotwork.geometry.nearest import closest
+from knotwork.geometry.closest_points import closest
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
