@@ -188,24 +188,22 @@ def zero_of(G, m, level):
     """Return where a polynomial that changes sign once, from below 0 to above, is 0 in [0, 1] (Illinois)."""
     a, b = 0.0, 1.0
     fa, fb = G[0], G[m]
-    t = 0.5
+    found, least, near = 0.5, math.inf, 2 * UNIT
     for _ in range(STEPS):
         t = a + (b - a) * (fa / (fa - fb)) if fa < 0 and fb > 0 else (a + b) / 2
-        t = min(max(t, a), b)
+        if not a < t < b:  # at an end that is nearly 0; the zero is beside it, or farther than it seems
+            t = (a + b) / 2 if near >= b - a else a + near if t <= a else b - near
+            near *= 16
         y = bernstein_value(G, m, t, level)
+        if abs(y) < least:
+            found, least = t, abs(y)
         if y < 0:
-            if t == a:
-                break
             a, fa, fb = t, y, fb / 2
         elif y > 0:
-            if t == b:
-                break
             b, fb, fa = t, y, fa / 2
-        else:
+        if y == 0 or b - a <= 2 * UNIT:
             break
-        if b - a <= 2 * UNIT:
-            break
-    return t
+    return found
 
 
 @kernel
