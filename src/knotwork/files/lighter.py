@@ -16,7 +16,8 @@ from knotwork.geometry.bezier import joined, raised
 from knotwork.insertion import to_bezier
 from knotwork.removal import reduce
 from knotwork.removal.shapes.bezier import EFFORTS, reduce_bezier
-from knotwork.removal.shapes.reducing import CORNER, breaks_by_length
+from knotwork.removal.shapes.features import CORNER
+from knotwork.removal.shapes.reducing import breaks_by_length
 from knotwork.spline import Spline
 
 #: the part of a tolerance that the rounding of numbers may use

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, whole
+from knotwork.conversion.elevation import elevate
 from knotwork.errors import ParameterError
 from knotwork.knots import distinct, multiplicities
 from knotwork.removal.features import Kept, kept_features
@@ -17,6 +18,7 @@ from knotwork.removal.problem import Original
 from knotwork.removal.result import Progress, Reduction
 from knotwork.removal.roads import reduced
 from knotwork.removal.surfaces import without_lines
+from knotwork.removal.varying import varies, varying
 from knotwork.spline import Spline, require_spline
 
 DISTANCES = ("parametric", "geometric")
@@ -90,6 +92,7 @@ def reduce(
     *,
     distance: str = "parametric",
     form: str = "spline",
+    degree: int | None = None,
     effort: str = "normal",
     keep: Kept = None,
     ends: int | tuple[int | None, int | None] | None = 0,
@@ -104,24 +107,34 @@ def reduce(
     ----------
     spline : Spline
         A curve, surface or volume; of the last two whole knot lines go, of all directions together.
-    tolerance : float or array_like, shape (d,), or relative
-        As in `remove`.
+    tolerance : float or array_like, shape (d,), or relative, or Spline, or callable
+        As in `remove`. Of a curve at equal parameters it may vary: a spline of one component over the same parameter,
+        or a function, which is taken at the knots of the curve and is straight between them. ``bound`` is then for
+        where it is largest, and elsewhere smaller in proportion.
     distance : "parametric" or "geometric"
         Whether points at equal parameters are compared, or shapes.
     form : "spline", "bezier" or "polyline"
-        What is asked for; at equal parameters a spline of the same degree. Between shapes, a cubic spline with simple
-        knots but at corners that stay, cubic Bézier pieces that join, or straight edges.
+        What is asked for; at equal parameters a spline. Between shapes, a cubic spline with simple knots but at corners
+        that stay, Bézier pieces that join, or straight edges.
+    degree : int, optional
+        Of the result. At equal parameters the spline's own, or a higher one, to which it is raised first; between
+        shapes that of Bézier pieces: 3, or 2 as in TrueType.
     effort : "fast", "normal" or "best"
         How long to search.
-    keep : "corners", or a list of numbers and pairs of numbers, optional
-        What stays bit for bit. A number: the knot there, with all its copies. A pair (a, b): the curve over [a, b], so
-        (u, u) is the point at u. "corners": all knots where the curve need not be smooth, and the points there.
+    keep : str, or a list of words, numbers and pairs of numbers, optional
+        What stays bit for bit. A number: the knot there, with all its copies; for shapes, the point there. A pair
+        (a, b): the curve over [a, b], so (u, u) is the point at u; for shapes, all pieces that reach into it.
+        "corners": all knots where the curve need not be smooth, and the points there; for shapes, joints where the
+        tangent turns by more than 10 degrees. For shapes also "lines": straight runs stay straight; and "extrema":
+        joints where a coordinate turns back.
     ends : int, None, or a pair of them
-        At clamped ends, how many derivatives stay, and the position with 0; None leaves an end free.
+        At clamped ends, how many derivatives stay, and the position with 0; None leaves an end free. For shapes, with
+        more than 0 the whole piece at the end stays.
     crossings : "none-new" or "allow"
         For shapes: whether the result may cross itself where the original does not.
     small : "keep" or "drop"
-        For shapes: what becomes of closed curves smaller than the tolerance.
+        What becomes of closed curves smaller than the tolerance: with "drop" they may become a single point, with
+        "keep" three control points or more.
     method : "lyche-morken", optional
         The classic search instead of ours.
     progress : callable, optional
@@ -163,19 +176,22 @@ def reduce(
     _require_one_of(distance=(distance, DISTANCES), form=(form, FORMS), effort=(effort, EFFORTS))
     _require_one_of(crossings=(crossings, CROSSINGS), small=(small, SMALL), method=(method, METHODS))
     if distance == "geometric":
-        from knotwork.removal.shapes.reducing import reduce_shape
+        from knotwork.removal.shapes.reducing import Wanted, reduce_shape
 
-        return reduce_shape(
-            spline, tolerance, form=form, effort=effort, keep=keep, crossings=crossings, small=small
-        )  # fmt: skip
+        if method is not None:
+            raise ParameterError(f"method {method!r} given; it compares equal parameters")
+        return reduce_shape(spline, tolerance, form, Wanted(degree, effort, keep, ends, crossings, small, progress))
     if form != "spline":
         raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")
+    spline = _raised(spline, degree)
     if len(spline.spaces) != 1:
         if keep is not None or ends != 0 or method is not None:
             raise ParameterError("keep, ends or method given; surfaces and volumes take none of them, and keep corners")
         return without_lines(spline, [space.removable for space in spline.spaces], tolerance, effort, progress)
     pinned, stay = kept_features(spline, keep, ends)
-    original = Original(spline, 0, tolerance, pinned)
+    if varies(tolerance):
+        tolerance = varying(spline, tolerance)
+    original = Original(spline, 0, tolerance, pinned, 1 if small == "drop" else fewest_of_closed(spline))
     candidates: Array = spline.space.removable & ~stay
     found = None
     if method is None and _has_roads(original):
@@ -190,6 +206,25 @@ def reduce(
         lower_bound=fewest_points(original),
         effort=effort,
     )
+
+
+def fewest_of_closed(spline: Spline) -> int:
+    """Return how many control points a curve has at least: a closed one that is more than a point stays one."""
+    P = spline.points.reshape(len(spline.points), -1)
+    planar = P.shape[1] > 1 or P.dtype.kind == "c"
+    closed = spline.space.periodic or bool((P[0] == P[-1]).all())
+    if not planar or not closed or not (P != P[0]).any():
+        return 1
+    return 3 if spline.space.periodic else 4 if spline.space.degree == 1 else spline.space.order
+
+
+def _raised(spline: Spline, degree: int | None) -> Spline:
+    """Return a spline of at least the degree it has."""
+    if degree is None:
+        return spline
+    for axis, own in enumerate(spline.degree):
+        spline = elevate(spline, whole(degree, "degree", own, ParameterError) - own, axis)
+    return spline
 
 
 def _has_roads(original: Original) -> bool:

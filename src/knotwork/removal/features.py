@@ -63,14 +63,19 @@ def at_ends(space: SplineSpace, ends: Any, pinned: Array) -> None:
     if space.periodic:
         return
     n, N, (a, b) = space.degree, space.dimension, space.domain
-    pair = ends if isinstance(ends, tuple) and len(ends) == 2 else (ends, ends)
-    order = [None if e is None else whole(e, "ends", 0, ParameterError) for e in pair]
+    order = end_orders(ends)
     start = int(np.searchsorted(space.knots, a, "right")) - 1 - n
     end = int(np.searchsorted(space.knots, b, "left")) - 1
     if order[0] is not None and space.multiplicity(a) > n:
         pinned[start : min(start + order[0] + 1, N)] = True
     if order[1] is not None and space.multiplicity(b) > n:
         pinned[max(end - order[1], 0) : end + 1] = True
+
+
+def end_orders(ends: Any) -> list[int | None]:
+    """Return how many derivatives stay at the two ends."""
+    pair = ends if isinstance(ends, tuple) and len(ends) == 2 else (ends, ends)
+    return [None if e is None else whole(e, "ends", 0, ParameterError) for e in pair]
 
 
 def _pin_interval(space: SplineSpace, low: Any, high: Any, pinned: Array) -> None:

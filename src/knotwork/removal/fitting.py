@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_floats, real_array
-from knotwork.conversion import elevate
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.lengths import increasing
 from knotwork.removal.faces import reduce
@@ -43,7 +42,7 @@ def fit(
     parameters : array_like, shape (m,), optional
         Increasing; with them the distance is that at equal parameters, unless `distance` says otherwise.
     degree : int
-        Of a spline at equal parameters; shapes are fitted by cubics, or by straight edges for ``form="polyline"``.
+        Of the curve; as in `reduce`. For ``form="polyline"`` it is 1, whatever is given.
     closed : bool, optional
         Whether the curve is closed; by default it is where the last point is the first.
     distance : {"parametric", "geometric"}, optional
@@ -88,11 +87,9 @@ def fit(
             t = np.append(t, t[-1] + (t[-1] - t[0]) / (len(t) - 1))
     polyline = _polyline(P, t, round_trip and len(P) > 3)
     how = distance or ("geometric" if parameters is None else "parametric")
-    if how == "parametric":
-        polyline = elevate(polyline, degree - 1) if degree > 1 else polyline
     return reduce(
-        polyline, tolerance, distance=how, form=form, effort=effort, keep=keep, ends=ends, crossings=crossings,
-        small=small, progress=progress,
+        polyline, tolerance, distance=how, form=form, degree=1 if form == "polyline" else degree, effort=effort,
+        keep=keep, ends=ends, crossings=crossings, small=small, progress=progress,
     )  # fmt: skip
 
 

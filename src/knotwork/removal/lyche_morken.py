@@ -87,6 +87,8 @@ def _attempt(
     """Fit without the picked copies of candidate knots; None if the tolerance does not admit it."""
     left = mask.copy()
     left[last_copies(candidates, owner, copies, picked)] = False
+    if left.sum() - (1 if original.space.periodic else original.space.order) < original.least:
+        return None
     trial = original.fit(left)
     return (trial, left) if original.admits(trial) else None
 

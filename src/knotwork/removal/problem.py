@@ -13,6 +13,7 @@ from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.linear.least_squares import least_squares
 from knotwork.removal.ranking import ranked
 from knotwork.removal.tolerance import Tolerance
+from knotwork.removal.varying import Varying
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 from knotwork.unrolled import goes_around
@@ -40,10 +41,16 @@ class Original:
     pinned : ndarray of int, optional
         The control points along the axis that stay as they are, with the knots between their ends; by default those at
         clamped ends.
+    least : int
+        How many control points there are at least, in the end.
     """
 
-    def __init__(self, spline: Spline, axis: int, tolerance: Any, pinned: Array | None = None) -> None:
-        self.spline, self.axis, self.space = spline, axis, spline.spaces[axis]
+    def __init__(self, spline: Spline, axis: int, tolerance: Any, pinned: Array | None = None, least: int = 1) -> None:
+        self.spline, self.axis, self.space, self.least = spline, axis, spline.spaces[axis], least
+        #: by what the changes of rows count for more where the tolerance is smaller; None if it is the same everywhere
+        self.strict: Array | None = None
+        if isinstance(tolerance, Varying):
+            tolerance, self.strict = tolerance.largest, tolerance.strict
         self.tolerance = Tolerance(spline, tolerance)
         self.exact = spline.coefficients.dtype == object
         self.pinned = end_points(self.space) if pinned is None else pinned
@@ -60,6 +67,8 @@ class Original:
         self.shape = as_blocks(spline.coefficients, axis).shape
         self.d = self._as_curve(spline.coefficients)
         self.weight = self.space.unrolled.supports / (n + 1)
+        if self.strict is not None:
+            self.weight = self.weight * self.strict**2
         if not self.exact:
             self.weight = self.weight / self.weight.max()
         if spline.rational:
@@ -147,8 +156,15 @@ class Original:
             reach = self.reach_along.reshape(points.shape)
             found = np.abs(back[..., :-1] / v - points) + reach * np.abs(v - w) / v
             bound = found + 2 * (off[..., :-1] + (np.abs(points) + reach) * off[..., -1:]) / least
-        found, bound = (self.tolerance.measured(x).reshape(-1, len(self.floor)).max(axis=0) for x in (found, bound))
+        found, bound = (self._largest(self.tolerance.measured(x)) for x in (found, bound))
         return Trial(other, bound, found)
+
+    def _largest(self, changes: Array) -> Array:
+        """Return the largest of the changes of rows, each counted by how strict the tolerance is there."""
+        if self.strict is not None:
+            changes = changes * self.strict[:, None, None]
+        largest: Array = changes.reshape(-1, len(self.floor)).max(axis=0)
+        return largest
 
     def fit(self, mask: Array) -> Trial:
         """Return the least-squares fit on the knots in `mask`, with its bound."""
@@ -194,7 +210,16 @@ class Original:
         inner = (values > a) & (values < b) | space.periodic
         costs = np.zeros(copies.sum())
         costs[np.repeat(inner, copies)] = ranked(unrolled.knots, d, n, last[inner], copies[inner], self.scale)
-        return costs
+        return costs if self.strict is None else costs * np.repeat(self._strict_at(values), copies)
+
+    def _strict_at(self, values: Array) -> Array:
+        """Return how strict the tolerance is at most around each of some knots, as floats."""
+        assert self.strict is not None
+        n, N = self.space.degree, self.space.dimension
+        rows = np.searchsorted(self.space.knots, values, "right")[:, None] - 1 - np.arange(n + 1)
+        rows = rows % N if self.space.periodic else np.clip(rows, 0, N - 1)
+        result: Array = self.strict[rows].max(axis=1).astype(np.float64)
+        return result
 
 
 def _largest_in_rows(A: Banded, sizes: Array) -> Array:

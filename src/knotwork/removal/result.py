@@ -12,6 +12,17 @@ from knotwork.spline import Spline
 Progress = Callable[[float], None]
 
 
+def tell(progress: Progress | None, part: float) -> None:
+    """Tell whoever asked how much is done."""
+    if progress is not None:
+        progress(part)
+
+
+def part_of(progress: Progress | None, k: int, count: int) -> Progress | None:
+    """Return what tells the progress of step k of `count`."""
+    return None if progress is None else lambda part: progress((k + part) / count)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Reduction:
     """The result of `remove`, `reduce` and `fit`.

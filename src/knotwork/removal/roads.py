@@ -62,19 +62,21 @@ class Roads:
 
     def __init__(self, curve: Scaled) -> None:
         self.curve, self.data, self.starts = curve, curve.data, Starts(curve)
+        #: how many knots are left at least
+        self.least = curve.whole.least + (0 if self.data.period else self.data.degree + 1)
 
     def left(self, manner: Manner, limit: float, progress: Progress | None) -> Links:
         """Return the knots left within a limit, with the curve over them."""
         j = 0
         while manner.first * 4.0**-j > limit and not self.starts.level(manner.first, j).mask.all():
             j += 1
-        links = self._along(self.starts.level(manner.first, j), manner, limit, 0, progress)
-        count, least = self._count(links), 0
+        links = self._along(self.starts.level(manner.first, j), manner, limit, self.least, progress)
+        count, least = self._count(links), self.least
         for coarser in range(j - 1, -1, -1):
             start = self.starts.level(manner.first, coarser)
             if int(start.mask.sum()) - (self.data.period > 0) <= max(count, least):
                 break
-            least = max(least, self._count(self._along(start, manner, manner.first * 4.0**-coarser, 0, None)))
+            least = max(least, self._count(self._along(start, manner, manner.first * 4.0**-coarser, self.least, None)))
         if least > count:
             links = self._along(self.starts.level(manner.first, j), manner, limit, least, None)
         return links
@@ -107,7 +109,7 @@ class Roads:
         price, force = Effort(around, FEW, 1, 0, 0.0), Effort(around, FEW, 2, 3, 0.0)
         beside = Effort(around, MORE, 1, 5, square)
         tries, found = 0, True
-        while found and tries < TRIES:
+        while found and tries < TRIES and self._count(links) > self.least:
             found, cost = False, np.full(len(links.alive), np.inf)
             prices(price, self.data, links, room, cost)
             cheapest = np.argsort(cost, kind="stable")[:CHEAPEST]
@@ -177,7 +179,7 @@ def reduced(original: Original, candidates: Array, effort: str, progress: Progre
 
     Where knots go for nothing, roads also start without them: so no tolerance leaves more than 0 does.
     """
-    free = for_nothing(original, candidates)
+    free = for_nothing(original, candidates) if original.strict is None else None
     curves = [Roads(Scaled(original, candidates, start)) for start in ([None, free] if free else [None])]
     ways = [(roads, manner) for roads in curves for manner in MANNERS[effort]]
     found: list[tuple[Found, tuple[Roads, Links] | None]] = []

@@ -33,7 +33,8 @@ class Scaled:
         self.whole, self.there = original, np.ones(len(candidates), bool)
         if free:
             trial, self.there = free
-            original = Original(trial.spline, 0, original.tolerance.given, original.held(self.there)[1])
+            pinned = original.held(self.there)[1]
+            original = Original(trial.spline, 0, original.tolerance.given, pinned, original.least)
             candidates = candidates[self.there]
         self.original, self.candidates = original, candidates
         spline, space = original.spline, original.space
@@ -63,14 +64,17 @@ class Scaled:
             d = (d - self.origin) * self.unit
         period = N if space.periodic else 0
         euclidean = original.tolerance.euclidean
-        self.data = Data(space.knots, np.ascontiguousarray(d), weight, pinned, reach, period, n, euclidean, candidates)
+        strict = np.ones(N) if original.strict is None else original.strict.astype(np.float64)
+        self.data = Data(
+            space.knots, np.ascontiguousarray(d), weight, pinned, reach, period, n, euclidean, candidates, strict
+        )
         self.shape = shape
 
     def limit(self) -> float:
         """Return the largest change, in our units, whose proven bound keeps the tolerance."""
         o = self.original
         size = np.abs(o.spline.points.reshape(-1, o.spline.dim)).max(axis=0)
-        off = o.tolerance.measured(2 * o.unit * size) * 1.25
+        off = o.tolerance.measured(2 * o.unit * size) * (1.25 * self.data.strict.max())
         given = np.broadcast_to(o.tolerance.given, off.shape)
         admitted = np.maximum(given - off, 0.9 * o.floor)
         shape = self.shape if len(admitted) > 1 else 1.0

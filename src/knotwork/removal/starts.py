@@ -40,9 +40,21 @@ class Starts:
         """Return the start that is off by at most first · 4^-j."""
         starts = self.found.setdefault(first, [])
         while len(starts) <= j:
-            fixed = ~self.candidates | ~self.original.space.removable
+            fixed = self._with_fewest(~self.candidates | ~self.original.space.removable)
             starts.append(self._refined(starts[-1].mask if starts else fixed, first * 4.0 ** -len(starts)))
         return starts[j]
+
+    def _with_fewest(self, mask: Array) -> Array:
+        """Return a mask with as many knots as have to stay, more of them spread evenly where they are too few."""
+        n, N, periodic = self.data.degree, self.original.space.dimension, bool(self.data.period)
+        missing = self.curve.whole.least + (1 if periodic else n + 1) - int(mask.sum())
+        if missing <= 0:
+            return mask
+        free = np.flatnonzero(~mask) if not periodic else np.arange(N)
+        mask = mask.copy()
+        count = min(self.curve.whole.least if periodic else missing, len(free))
+        mask[free[np.arange(count) * len(free) // count]] = True
+        return mask
 
     def _refined(self, mask: Array, most: float) -> Start:
         """Return least squares over knots, with more added until it is off by at most that."""
@@ -89,5 +101,5 @@ class Starts:
         else:
             change = v - data.d
         squares = change**2
-        off = squares.sum(axis=1) if data.euclidean else squares.max(axis=1)
+        off = (squares.sum(axis=1) if data.euclidean else squares.max(axis=1)) * data.strict**2
         return Start(mask, c, float(off.max())), off

@@ -25,7 +25,7 @@ from knotwork.conversion.certificate import Certificate, Lifted, lifted, warn_of
 from knotwork.insertion.face import insertion_matrix
 from knotwork.linear.banded import as_blocks
 from knotwork.removal.knot_lines import Axis, Measure, cost, increase, take_line, take_out_line
-from knotwork.removal.result import Progress, Reduction
+from knotwork.removal.result import Progress, Reduction, part_of
 from knotwork.removal.tolerance import Tolerance
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -67,7 +67,7 @@ def without_lines(
     best = None
     for k, order in enumerate(orders):
         net = Net(spline, candidates, judge.scale, judge.tolerance.euclidean, order)
-        net.remove(judge.limit, _part_of(progress, k, len(orders)))
+        net.remove(judge.limit, part_of(progress, k, len(orders)))
         result = judge.judged(net.fitted()) if net.way else judge.nothing(spline)
         while net.way and not judge.admits(result):  # rounding, or a weight that fell: one step back
             net.back()
@@ -80,11 +80,6 @@ def without_lines(
     result, net = best
     removed = tuple(axis.full.knots[~axis.mask] for axis in net.axes)
     return Reduction(result.spline, judge.told(result), removed=removed, effort=effort)
-
-
-def _part_of(progress: Progress | None, k: int, count: int) -> Progress | None:
-    """Return what tells the progress of step k of `count`."""
-    return None if progress is None else lambda part: progress((k + part) / count)
 
 
 class Judged(NamedTuple):

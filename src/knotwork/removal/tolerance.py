@@ -11,6 +11,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_arithmetic_of, real_numbers
 from knotwork.errors import ParameterError
+from knotwork.geometry.boxes import extent
 from knotwork.spline import Spline
 
 
@@ -32,10 +33,7 @@ def relative(fraction: Any) -> Relative:
     Examples
     --------
     >>> import knotwork as kw
-    >>> from knotwork.removal.tolerance import extent_of
     >>> arch = kw.curve([[0, 0], [1, 4], [2, 0]], 2)
-    >>> extent_of(arch)
-    2.0
     >>> kw.reduce(kw.insert(arch, 0.25), kw.relative(0.01)).spline.space == arch.space
     True
     """
@@ -43,19 +41,6 @@ def relative(fraction: Any) -> Relative:
     if value.shape != () or value < 0:
         raise ParameterError(f"fraction {fraction!r} given; expected a number of at least 0")
     return Relative(value[()])
-
-
-def extent_of(spline: Spline) -> Any:
-    """Return the longest side of the box of the points at eight places in each interval: at most the true extent."""
-    axes = []
-    for space in spline.spaces:
-        breaks = space.breaks
-        steps = np.arange(8) * (breaks[1:] - breaks[:-1])[:, None] / 8
-        axes.append(np.append((breaks[:-1, None] + steps).reshape(-1), breaks[-1:]))
-    values = spline(*axes, grid=True)
-    values = np.abs(values) if values.dtype.kind == "c" else values
-    values = values.reshape(-1, spline.dim)
-    return (values.max(axis=0) - values.min(axis=0)).max(keepdims=True).item()
 
 
 class Tolerance:
@@ -66,7 +51,9 @@ class Tolerance:
 
     def __init__(self, spline: Spline, tolerance: Any) -> None:
         if isinstance(tolerance, Relative):
-            tolerance = tolerance.fraction * extent_of(spline)
+            tolerance = tolerance.fraction * _extent(spline)
+        if callable(tolerance):
+            raise ParameterError("a tolerance over the parameter given; it is for curves at equal parameters")
         given = real_numbers(tolerance, "tolerance", ParameterError)
         if given.shape not in ((), (spline.dim,)):
             raise ParameterError(
@@ -87,6 +74,15 @@ class Tolerance:
     def reported(self, bound: Array) -> Any:
         """Return the bound as the tolerance was given: a number, or one per component."""
         return bound.max(keepdims=True).item() if self.euclidean else bound
+
+
+def _extent(spline: Spline) -> Any:
+    """Return the longest side of the box of a spline, complex numbers being points in the plane."""
+    c = spline.coefficients
+    if c.dtype.kind == "c":
+        c = np.stack([c.real, c.imag], axis=-1).reshape(*c.shape[: len(spline.spaces)], -1)
+        spline = Spline(spline.spaces, c)
+    return extent([spline])
 
 
 def lengths(change: Array) -> Array:

@@ -33,6 +33,8 @@ class Data(NamedTuple):
     euclidean: bool
     #: which knots may go
     may: Array
+    #: by what the change of a row counts for more than where the tolerance is largest
+    strict: Array
 
 
 class Effort(NamedTuple):
@@ -214,7 +216,7 @@ def measure(used, whole, u0, u1, turn, data, links, room):
                     v[c] = v[c] + w * links.c[home, c]
         for c in range(len(v)):
             room.rest[r, c] = d[i, c] - v[c]
-        room.off[r] = missed(i, v, data)
+        room.off[r] = missed(i, v, data) * (data.strict[i] * data.strict[i])
         worst = max(worst, room.off[r])
     return worst
 

@@ -11,7 +11,10 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import ParameterError, PointError
+from knotwork.geometry.bezier import raised
+from knotwork.removal.result import Progress, tell
 from knotwork.removal.shapes import certificate, corners
+from knotwork.removal.shapes.quadratic import QuadraticSearch
 from knotwork.removal.shapes.samples import counted
 from knotwork.removal.shapes.search import Effort, Found, Search
 
@@ -31,6 +34,8 @@ SCALE = 4.0
 FINEST = 2.0**-40
 #: pieces for each of those given, where those given are no answer
 ALLOWED = 16
+#: pieces of a curve that are searched at once, about: what bounds the memory
+LONG = 1 << 14
 
 
 class Pieces(NamedTuple):
@@ -72,10 +77,10 @@ class Curves(NamedTuple):
 
     def target(self) -> Array:
         """Return the square of the largest distance that may be found for each curve, rounding left out."""
-        F, d, q = self.nets, len(self.unit), self.nets.shape[1] - 1
+        F, d = self.nets, len(self.unit)
         # how large g is, is not known yet: mostly no larger than f and some tolerances
         largest = _sizes(F, self.at, self.rational)
-        allowance = _allowance(self.metric, 2 * largest + 4 * self.unit, q, self.rational)
+        allowance = _allowance(self.metric, 2 * largest + 4 * self.unit, F.shape[1] + 2, self.rational)
         left = np.maximum(self.reach / _outward(d) - allowance, 0)
         result: Array = left * left / _outward(d)
         return result
@@ -83,9 +88,10 @@ class Curves(NamedTuple):
 
 def reduce_bezier(
     nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, lines: bool = False,
-    keep: Any = (), effort: str = "normal", crossings: str = "none-new", rational: bool = False,
+    keep: Any = (), effort: str = "normal", crossings: str = "none-new", rational: bool = False, degree: int = 3,
+    progress: Progress | None = None,
 ) -> Pieces:  # fmt: skip
-    """Return few cubic pieces within a distance of each curve.
+    """Return few cubic pieces within a distance of each curve, or quadratic ones.
 
     Parameters
     ----------
@@ -110,6 +116,10 @@ def reduce_bezier(
         Whether to avoid self-crossings of plane curves that they do not have. Looked for in chords of neighbouring
         pieces: not a proof.
     rational : bool
+    degree : {3, 2}
+        Of the new pieces.
+    progress : callable, optional
+        Called with the part that is done after each curve, and each of the parts of LONG pieces of a long one.
 
     Returns
     -------
@@ -132,15 +142,15 @@ def reduce_bezier(
     how = efforts(effort, crossings)
     nets, at = given.nets, given.at
     if not given.possible:
-        return _nothing(nets, len(at) - 1)
-    found = searched(given, how)
+        return _nothing(len(at) - 1, degree, nets.shape[2])
+    found = searched(given, how, degree, progress)
     G, where = _joined([c.G for c in found])
     u, path = _joined([c.u for c in found])
     s, _ = _joined([c.s for c in found])
     square = np.array([c.square for c in found])
     F, metric, each = given.nets, given.metric, given.each
     sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
-    bound = (np.sqrt(square) + _allowance(metric, sizes, F.shape[1] - 1, rational)) * _outward(len(metric))
+    bound = (np.sqrt(square) + _allowance(metric, sizes, F.shape[1] + 2, rational)) * _outward(len(metric))
     if not each:
         bound = np.ldexp(bound, given.exponent)
     some = where[1:] > where[:-1]
@@ -228,10 +238,10 @@ def _scaled(nets: Array, exponent: int, rational: bool) -> Array:
     return np.concatenate([np.ldexp(nets[..., :-1], -exponent), nets[..., -1:]], axis=2)
 
 
-def _nothing(nets: Array, count: int) -> Pieces:
+def _nothing(count: int, degree: int, width: int) -> Pieces:
     none = np.zeros(count + 1, np.int64)
     empty = np.zeros(0)
-    return Pieces(np.zeros((0, 4, nets.shape[2])), none, empty, empty, none, np.zeros(count), none[:count])
+    return Pieces(np.zeros((0, degree + 1, width)), none, empty, empty, none, np.zeros(count), none[:count])
 
 
 def _opened(F: Array, at: Array, per: Array, closed: Array, d: int) -> tuple[Array, Array]:
@@ -254,22 +264,57 @@ def _keep(hard: Array, keep: Array, at: Array, start: Array, closed: Array) -> N
     hard[at[own] + own + place] = 1
 
 
-def searched(given: Curves, efforts: tuple[Effort, ...]) -> list[Found]:
-    """Search for pieces near each curve; none where there are none."""
-    F, at, hard, unit, rational = given.nets, given.at, given.hard, given.unit, given.rational
-    q, d, sizes = F.shape[1] - 1, len(unit), np.diff(at)
-    allowed = ALLOWED * (sizes + 4) if rational or q > 3 else np.maximum(sizes - 1, 0)
-    target = given.target()
-    most = counted(F, at, 1 / unit, extent(d))
-    search = Search(most + most // 2 + 64, int(allowed.max(initial=0)), unit, given.metric, q, rational)
-    none = Found(np.zeros((0, 4, F.shape[2])), np.zeros(0), np.zeros(0), 0.0)
+def searched(
+    given: Curves, efforts: tuple[Effort, ...], degree: int = 3, progress: Progress | None = None
+) -> list[Found]:
+    """Search for pieces near each curve; none where there are none. A long curve is searched part by part."""
+    F, at, unit, rational, target = given.nets, given.at, given.unit, given.rational, given.target()
+    q, d = F.shape[1] - 1, len(unit)
+    parts = [
+        np.append(np.arange(lo, max(hi - LONG // 2, lo + 1), LONG), hi) for lo, hi in itertools.pairwise(at.tolist())
+    ]
+    ends = np.unique(np.concatenate([at, *parts]))
+    more = rational or q > degree
+    allowed = ALLOWED * (np.diff(ends) + 4) if more else np.maximum(np.diff(ends) - 1, 0)
+    most = counted(F, ends, 1 / unit, extent(d))
+    kind = Search if degree == 3 else QuadraticSearch
+    search = kind(most + most // 2 + 64, int(allowed.max(initial=0)), unit, given.metric, q, rational)
     result = []
-    for i, (lo, hi) in enumerate(itertools.pairwise(at.tolist())):
-        found = (
-            search.fewest(F[lo:hi], hard[lo + i : hi + i + 1], target[i], allowed[i], efforts) if allowed[i] else None
-        )
-        result.append(found or none)
+    for i, cuts in enumerate(parts):
+        found: list[Found] = []
+        for lo, hi in itertools.pairwise(cuts.tolist()):
+            room = int(allowed[np.searchsorted(ends, lo)]) if hi > lo else 0
+            hard = given.hard[lo + i : hi + i + 1]
+            part = search.fewest(F[lo:hi], hard, target[i], room, efforts) if room else None
+            if part is None and (len(cuts) == 2 or more):
+                break
+            found.append(part or as_pieces(F[lo:hi], degree))
+            tell(progress, hi / len(F))
+        else:
+            whole = _chained(found, F.shape[1:], cuts - cuts[0], degree)
+            if more or len(whole.G) < cuts[-1] - cuts[0]:
+                result.append(whole)
+                continue
+        result.append(Found(np.zeros((0, degree + 1, F.shape[2])), np.zeros(0), np.zeros(0), 0.0))
     return result
+
+
+def _chained(parts: list[Found], shape: tuple[int, ...], starts: Array, degree: int) -> Found:
+    """Return what was found for the parts of one curve as one."""
+    if len(parts) == 1:
+        return parts[0]
+    before = np.cumsum([0, *(len(p.G) for p in parts)])
+    u = [p.u[k > 0 :] + before[k] for k, p in enumerate(parts)]
+    s = [p.s[k > 0 :] + starts[k] for k, p in enumerate(parts)]
+    square = max((p.square for p in parts), default=0.0)
+    G = [np.zeros((0, degree + 1, shape[1])), *(p.G for p in parts)]
+    return Found(np.concatenate(G), np.concatenate([np.zeros(0), *u]), np.concatenate([np.zeros(0), *s]), square)
+
+
+def as_pieces(F: Array, degree: int = 3) -> Found:
+    """Return a curve of that degree or less as its own pieces."""
+    along = np.arange(len(F) + 1.0)
+    return Found(raised(F, degree), along, along, 0.0)
 
 
 def _outward(d: int) -> float:
@@ -277,12 +322,14 @@ def _outward(d: int) -> float:
     return 1 + (d + 6) * 2 * certificate.ROUNDING
 
 
-def _allowance(metric: Array, sizes: Array, q: int, rational: bool) -> Array:
+def _allowance(metric: Array, sizes: Array, degrees: int, rational: bool) -> Array:
     """Return what rounding can add to distances by the metric; sizes, shape (curves, d), of both curves together.
+
+    The degrees are the sum of both.
 
     For the proof see `Scaled.allowance`.
     """
-    factor = (8 * (q + 3) + 16) if rational else (3 * (q + 3) + 4)
+    factor = (8 * degrees + 16) if rational else (3 * degrees + 4)
     slack = factor * certificate.ROUNDING * sizes * (1 + 2.0**-40)
     result: Array = np.sqrt((metric * slack * slack).sum(axis=1)) * (1 + 2.0**-40)
     return result

@@ -91,17 +91,19 @@ def whole(F, S, j, end, D):
 
 
 @kernel(inline=False)
-def as_cubic(net, out, D):
-    """Write a net of degree 1 to 3 as one of degree 3."""
-    n = len(net) - 1
+def as_piece(net, out, D):
+    """Write a net of degree 1 to 3 as one of degree 2 or 3, whichever fits into `out`."""
+    n, p = len(net) - 1, len(out) - 1
     for c in range(len(D)):
         first, last = net[0, c], net[n, c]
-        out[0, c], out[3, c] = first, last
-        if n == 1:
-            out[1, c], out[2, c] = first + (last - first) / 3, last - (last - first) / 3
-        else:
-            out[1, c] = net[1, c] if n == 3 else (first + 2 * net[1, c]) / 3
-            out[2, c] = net[2, c] if n == 3 else (2 * net[1, c] + last) / 3
+        out[0, c], out[p, c] = first, last
+        for i in range(1, p):
+            if n == p:
+                out[i, c] = net[i, c]
+            elif n == 2:
+                out[i, c] = (first + 2 * net[1, c]) / 3 if i == 1 else (2 * net[1, c] + last) / 3
+            else:
+                out[i, c] = first + (last - first) / p if 2 * i <= p else last - (last - first) / p
 
 
 @kernel(inline=False)
@@ -120,7 +122,7 @@ def greedy(F, per, G, S, last, room, effort, most):
         while end < last and not S.hard[end]:
             end += 1
         if whole(F, S, j, end, D):
-            as_cubic(F[int(S.s[j])], G[k], D)
+            as_piece(F[int(S.s[j])], G[k], D)
             for i in range(4):
                 for c in range(len(D)):
                     G[k, i, c] = (G[k, i, c] - F[0, 0, c]) * per[c]

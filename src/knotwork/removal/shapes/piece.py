@@ -6,8 +6,13 @@ import math
 
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.residuals import FAIR, bernstein, measured, rematched
-from knotwork.removal.shapes.window import HOPELESS, TARGET, fitted_window
+from knotwork.removal.shapes.window import FAR, HOPELESS, TARGET, fitted_window
 
+#: the polynomials that least squares are in, by name: quadratic ones take their place
+basis = bernstein
+#: sweeps of least squares: these, and more as long as the piece is far and each comes closer by that factor
+FEW, SWEEPS = 2, 16
+CLOSER = 0.85
 #: pull of the control points towards the thirds of the chord, where the samples say nothing
 RIDGE = 1e-7
 
@@ -22,13 +27,28 @@ def by_length(S, ja, first, jb, k):
     u[jb] = k + 1.0
 
 
+@kernel
+def degree():
+    """Return the degree of new pieces."""
+    return 3
+
+
+@kernel
+def taken(G, k, n, room):
+    """Take the n points found of piece k over."""
+    for i in range(n):
+        for c in range(len(room.D)):
+            G[k, i + 1, c] = room.R[i, c]
+
+
 @kernel(inline=False)
 def least_squares(G, k, S, ja, jb, room, tied):
     """Fit the free points of piece k to samples and middles of gaps at their parameters; P_0 (and P_3 if tied) stay."""
     D, B, M, R, y, a, u = room.D, room.B, room.M, room.R, S.y, S.a, S.u
-    n = 3 - tied
+    p = degree()
+    n = p - tied
     for i in range(n):
-        third = (i + 1) / 3
+        third = (i + 1) / p
         for l in range(n):
             M[i, l] = 0
         M[i, i] = RIDGE
@@ -41,7 +61,7 @@ def least_squares(G, k, S, ja, jb, room, tied):
         for middle in range(2):
             if middle == 1 and not bent:
                 continue
-            bernstein((u[j + 1] + u[j]) / 2 - k if middle == 1 else u[j + 1] - k, B)
+            basis((u[j + 1] + u[j]) / 2 - k if middle == 1 else u[j + 1] - k, B)
             for i in range(n):
                 for l in range(i + 1):
                     M[i, l] += B[i + 1] * B[l + 1]
@@ -49,7 +69,7 @@ def least_squares(G, k, S, ja, jb, room, tied):
                 value = (y[j, c] + y[j + 1, c]) / 2 + a[j, c] if middle == 1 else y[j + 1, c]
                 value -= B[0] * G[k, 0, c]
                 if tied:
-                    value -= B[3] * G[k, 3, c]
+                    value -= B[p] * G[k, 3, c]
                 for i in range(n):
                     R[i, c] += B[i + 1] * value
     for i in range(n):
@@ -70,17 +90,22 @@ def least_squares(G, k, S, ja, jb, room, tied):
             for m in range(i + 1, n):
                 R[i, c] -= M[m, i] * R[m, c]
             R[i, c] *= M[i, i]
-            G[k, i + 1, c] = R[i, c]
+    taken(G, k, n, room)
 
 
 @kernel(inline=False)
 def fitted_piece(G, k, S, ja, jb, room, tied, steps):
     """Fit piece k to samples ja … jb, whose parameters are a first guess; return the largest distance."""
     worst = math.inf
-    for _ in range(3):
+    for sweep in range(SWEEPS):
+        before = worst
         least_squares(G, k, S, ja, jb, room, tied)
         rematched(G, k, k, S, ja, jb, room)
         worst = measured(G, k, k, S, ja, jb, room, 0, 4, math.inf, FAIR)[1]
-        if worst <= TARGET or not worst < HOPELESS:
+        if worst <= TARGET:
             return worst
+        if sweep >= FEW and (worst < FAR or worst > CLOSER * before):
+            break
+    if not worst < HOPELESS:
+        return worst
     return fitted_window(G, k, k, S, ja, jb, room, tied, steps, FAIR)

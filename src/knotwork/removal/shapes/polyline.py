@@ -30,8 +30,6 @@ class Polyline(NamedTuple):
     s: Array
     #: proven bound on the distance of the shapes: a number, or one a component
     bound: Any
-    #: whether the shape was smaller than the tolerance and is a point now (`small="drop"`)
-    dropped: bool
 
 
 @kernel
@@ -50,7 +48,6 @@ def reduce_polyline(
     closed: bool = False,
     keep: Array | None = None,
     ends: str = "fixed",
-    small: str = "keep",
     effort: str = "normal",
 ) -> Polyline:
     """Return a polyline with few vertices, anywhere, within a distance of a given one.
@@ -67,15 +64,14 @@ def reduce_polyline(
         Vertices that stay, bit for bit.
     ends : {"fixed", "free"}
         Whether the ends of an open curve stay.
-    small : {"keep", "drop"}
-        Whether a closed curve within the tolerance of a point stays one that can be drawn, of three vertices or more.
     effort : {"fast", "normal", "best"}
         How many candidates for vertices are tried.
 
     Returns
     -------
     Polyline
-        Its bound is at most the tolerance; it never has more vertices than were given.
+        Its bound is at most the tolerance; it never has more vertices than were given. A closed curve stays one that
+        can be drawn, of three vertices or more.
 
     Notes
     -----
@@ -87,10 +83,6 @@ def reduce_polyline(
     kept = np.zeros(len(Y), bool) if keep is None else np.array(keep, bool)
     if closed:
         kept[0] = kept[-1] = kept[0] or kept[-1]
-        if small == "drop" and not kept.any():
-            dropped = _as_point(Y, tolerance)
-            if dropped is not None:
-                return dropped
     elif ends == "fixed":
         kept[0] = kept[-1] = True
     shift = int(np.argmax(kept)) if closed else 0
@@ -111,14 +103,14 @@ def reduce_polyline(
         s = s + shift
         bound = Scaled(_edges(Y), _edges(V), tolerance).bound(u, s)
         if np.all(bound <= tolerance):
-            return Polyline(V, u, s, bound, False)
+            return Polyline(V, u, s, bound)
     return itself(Y, tolerance)
 
 
 def itself(Y: Array, tolerance: Any) -> Polyline:
     """Return the polyline as it was given."""
     s = np.arange(len(Y)).astype(float)
-    return Polyline(Y, s, s, np.zeros(Y.shape[1]) if np.ndim(tolerance) else 0.0, False)
+    return Polyline(Y, s, s, np.zeros(Y.shape[1]) if np.ndim(tolerance) else 0.0)
 
 
 class Work:
@@ -261,14 +253,6 @@ def _offsets(d: int, effort: str) -> Array:
             unit = np.concatenate([unit, signs])
         rings = [r * unit for r in ((0.5, 0.9) if effort == "best" else (0.9,))]
     return np.concatenate([np.zeros((1, d)), *rings])
-
-
-def _as_point(Y: Array, tolerance: Any) -> Polyline | None:
-    """Return the middle of the box of a curve, if the whole curve is within the tolerance of it."""
-    middle = Y.min(axis=0) / 2 + Y.max(axis=0) / 2
-    s = np.arange(len(Y)).astype(float)
-    bound = Scaled(_edges(Y), middle[None, None], tolerance).bound(np.minimum(s, 0), s)
-    return Polyline(middle[None], s * 0, s, bound, True) if np.all(bound <= tolerance) else None
 
 
 def _three(Y: Array, kept: Array) -> Array | None:

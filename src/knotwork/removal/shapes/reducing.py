@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,10 +12,12 @@ from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import joined
 from knotwork.geometry.lengths import increasing
-from knotwork.removal.result import Reduction
+from knotwork.removal.features import end_orders
+from knotwork.removal.result import Progress, Reduction, tell
 from knotwork.removal.shapes.between import Matching
 from knotwork.removal.shapes.bezier import Pieces, reduce_bezier, scaled_by
 from knotwork.removal.shapes.certificate import Scaled
+from knotwork.removal.shapes.features import Features, shape_features, turning
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
 from knotwork.removal.shapes.polyline import reduce_polyline
@@ -24,21 +26,20 @@ from knotwork.removal.tolerance import Tolerance
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
-#: a joint of a curve is a corner where its tangent turns by more than this, in degrees
-CORNER = 10.0
-FEATURES = ("corners", "lines")
+
+class Wanted(NamedTuple):
+    """What is asked for, beside the form and the tolerance: see `reduce`."""
+
+    degree: int | None
+    effort: str
+    keep: Any
+    ends: Any
+    crossings: str
+    small: str
+    progress: Progress | None
 
 
-def reduce_shape(
-    spline: Spline,
-    tolerance: Any,
-    *,
-    form: str,
-    effort: str,
-    keep: Any,
-    crossings: str,
-    small: str,
-) -> Reduction:
+def reduce_shape(spline: Spline, tolerance: Any, form: str, wanted: Wanted) -> Reduction:
     """Return a curve with few pieces, the shape of which is within a distance of the given one.
 
     Parameters
@@ -49,25 +50,113 @@ def reduce_shape(
         As in `reduce`: a Fréchet distance, or one per component.
     form : {"spline", "bezier", "polyline"}
         A smooth spline with simple knots, cubic pieces that join, or straight edges.
-    effort : {"fast", "normal", "best"}
-    keep : str or sequence, optional
-        "corners" and "lines", and parameters of joints that stay.
-    crossings : {"none-new", "allow"}
-        Whether cubic pieces may cross where the curve does not.
-    small : {"keep", "drop"}
-        What becomes of closed polylines within the tolerance of a point.
+    wanted : Wanted
     """
-    curve = checked(spline)
-    given = Tolerance(curve, tolerance).given
-    allowed = given.astype(np.float64) if given.dtype == object else given
-    rational = curve.rational
-    in_floats(np.array(curve.space.domain), "domain", ParameterError)  # what follows spreads new knots over it
-    pieces, _ = nets(curve, rational)
-    closed = _closed(curve, pieces)
-    if form == "polyline":
-        return _polyline(curve, pieces, allowed, closed, effort, keep, small)
-    search = _bezier if form == "bezier" else _smooth
-    return search(curve, pieces, allowed, closed, effort, keep, crossings)
+    degrees = DEGREES[form]
+    degree = degrees[-1] if wanted.degree is None else wanted.degree
+    if degree not in degrees:
+        known = " or ".join(map(str, degrees))
+        raise ParameterError(f"degree {degree} given; between shapes form {form!r} has degree {known}")
+    shape = Shape.of(spline, tolerance, wanted.keep, wanted.ends)
+    tell(wanted.progress, 0.0)
+    found = as_point(shape, degree) if wanted.small == "drop" and shape.closed and not len(shape.stay.joints) else None
+    found = found or SEARCHES[form](shape, degree, wanted)
+    tell(wanted.progress, 1.0)
+    return found
+
+
+class Shape(NamedTuple):
+    """The curve that is reduced, as nets that may be `off` by so much, and what is to be kept to."""
+
+    curve: Spline
+    pieces: Array
+    off: Array
+    allowed: Any
+    closed: bool
+    stay: Features
+
+    @classmethod
+    def of(cls, spline: Spline, tolerance: Any, keep: Any, ends: Any) -> Shape:
+        """Return a spline as a shape, or raise if it is none."""
+        curve = checked(spline)
+        given = Tolerance(curve, tolerance).given
+        allowed = given.astype(np.float64) if given.dtype == object else given
+        in_floats(np.array(curve.space.domain), "domain", ParameterError)  # what follows spreads new knots over it
+        pieces, off = nets(curve, curve.rational)
+        closed = bool(curve.space.periodic or (is_closed(pieces, curve.rational) and len(pieces) > 2))
+        return cls(curve, pieces, off, allowed, closed, shape_features(curve, pieces, keep, ends, closed))
+
+    @property
+    def each(self) -> bool:
+        """Whether there is a tolerance for each component."""
+        return np.ndim(self.allowed) == 1
+
+    @property
+    def reach(self) -> Any:
+        """What is left of the tolerance between the nets and what is found: twice how far they may be off is not."""
+        return np.maximum(self.allowed - 2 * self.slack, 0)
+
+    @property
+    def slack(self) -> Any:
+        """How far the nets may be off: a distance, or one in each component."""
+        return self.off if self.each else float(np.sqrt((self.off**2).sum())) * (1 + 2.0**-40)
+
+
+def as_point(shape: Shape, degree: int) -> Reduction | None:
+    """Return a curve that is one point, if the whole curve is within the tolerance of it."""
+    curve, pieces = shape.curve, shape.pieces
+    points = pieces[..., :-1] / pieces[..., -1:] if curve.rational else pieces
+    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+    point = low / 2 + high / 2
+    net = np.repeat(point[None, None], degree + 1, axis=1)
+    given = np.concatenate([net, np.ones((1, degree + 1, 1))], axis=2) if curve.rational else net
+    s = np.arange(len(pieces) + 1.0)
+    u = s / len(pieces)
+    bound = Scaled(pieces, given, shape.allowed, rational=curve.rational, given=shape.off).bound(u, s)
+    if not np.all(bound <= shape.allowed):
+        return None
+    spline = joined(net, np.array(curve.space.domain, float), curve.space.periodic)
+    return Reduction(spline, bound, "geometric", (), 1, None, Matching(s, u, True))
+
+
+def _bezier(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
+    """Return pieces of degree 2 or 3 that join."""
+    found, closed = _pieces([shape], degree, wanted), shape.closed
+    low = degree * _lower_bound(shape, degree) + (not closed)
+    spline = _joined(shape, found, 0)
+    if spline is None:
+        return _itself(shape, wanted.effort, low)
+    matching = Matching(found.s + found.start[0], found.u, closed)
+    return Reduction(spline, _bound(shape, found, 0), "geometric", (), low, None, matching, wanted.effort)
+
+
+def _pieces(shapes: Sequence[Shape], degree: int, wanted: Wanted) -> Pieces:
+    """Return pieces for shapes that differ in nothing that the search sees."""
+    angle, lines, _ = shapes[0].stay
+    at = np.concatenate([[0], np.cumsum([len(shape.pieces) for shape in shapes])])
+    joints = np.concatenate([start + shape.stay.joints for start, shape in zip(at.tolist(), shapes, strict=False)])
+    return reduce_bezier(
+        np.concatenate([shape.pieces for shape in shapes]), at, shapes[0].reach, degree=degree,
+        closed=[shape.closed for shape in shapes], angle=angle, lines=lines, keep=joints, effort=wanted.effort,
+        crossings=wanted.crossings, rational=shapes[0].curve.rational, progress=wanted.progress,
+    )  # fmt: skip
+
+
+def _joined(shape: Shape, found: Pieces, k: int) -> Spline | None:
+    """Return the curve of the pieces that were found for shape k; None if it is its own answer."""
+    own, curve = found.nets[found.at[k] : found.at[k + 1]], shape.curve
+    if not len(own):
+        return None
+    new = own[..., :-1] / own[..., -1:] if curve.rational else own
+    t = breaks_by_length(new, curve.space.domain, shape.closed)
+    return joined(new, t, shape.closed and curve.space.periodic)
+
+
+def _bound(shape: Shape, found: Pieces, k: int) -> Any:
+    """Return how far the pieces of shape k are off, what its nets may be off included."""
+    if shape.each:
+        return found.bound[k] * shape.reach + 2 * shape.slack
+    return float(found.bound[k]) + shape.slack
 
 
 def reduce_shapes(
@@ -77,131 +166,87 @@ def reduce_shapes(
 
     Left out are the matchings and the lower bounds, which take as long as the search. What makes a search for one
     curve slow is to prepare it; so curves are searched together that differ in nothing that the search sees: dimension,
-    degree, and by which power of two they are scaled.
+    degree, what rounding leaves of the tolerance, and by which power of two they are scaled.
 
     Raises
     ------
     KnotworkError
         If a curve is none for `reduce_shape`.
     """
-    ready = [checked(curve) for curve in curves]
-    pieces = [nets(curve, curve.rational)[0] for curve in ready]
+    wanted = Wanted(None, effort, keep, 0, crossings, "keep", None)
+    shapes = [Shape.of(curve, tolerance, keep, 0) for curve in curves]
     alike: dict[Any, list[int]] = defaultdict(list)
-    for i, (curve, net) in enumerate(zip(ready, pieces, strict=True)):
-        alike[curve.rational, net.shape[1:], scaled_by(net, curve.rational)].append(i)
+    for i, shape in enumerate(shapes):
+        rational = shape.curve.rational
+        alike[rational, shape.pieces.shape[1:], float(shape.reach), scaled_by(shape.pieces, rational)].append(i)
     found: dict[int, Reduction] = {}
-    for (rational, *_), some in alike.items():
-        closed = [_closed(ready[i], pieces[i]) for i in some]
-        at = np.concatenate([[0], np.cumsum([len(pieces[i]) for i in some])])
-        features = [_features(ready[i], pieces[i], keep) for i in some]
-        joints = np.concatenate([start + each[2] for start, each in zip(at.tolist(), features, strict=False)])
-        result = reduce_bezier(
-            np.concatenate([pieces[i] for i in some]), at, tolerance, closed=closed, angle=features[0][0],
-            lines=features[0][1], keep=joints, effort=effort, crossings=crossings, rational=rational,
-        )  # fmt: skip
+    for some in alike.values():
+        result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
         for k, i in enumerate(some):
-            spline = _joined(ready[i], result, k, closed[k])
-            made = ready[i] if spline is None else spline
-            found[i] = Reduction(made, float(result.bound[k]), "geometric", effort=effort)
+            made = _joined(shapes[i], result, k)
+            bound = 0.0 if made is None else _bound(shapes[i], result, k)
+            found[i] = Reduction(shapes[i].curve if made is None else made, bound, "geometric", effort=effort)
     return [found[i] for i in range(len(curves))]
 
 
-def _closed(curve: Spline, pieces: Array) -> bool:
-    return bool(curve.space.periodic or (is_closed(pieces, curve.rational) and len(pieces) > 2))
-
-
-def _bezier(
-    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, crossings: str
-) -> Reduction:
-    """Return cubic pieces that join."""
-    angle, lines, joints = _features(curve, pieces, keep)
-    found = reduce_bezier(
-        pieces, [0, len(pieces)], allowed, closed=closed, angle=angle, lines=lines, keep=joints, effort=effort,
-        crossings=crossings, rational=curve.rational,
-    )  # fmt: skip
-    return _made(curve, pieces, found, 0, allowed, closed, effort)
-
-
-def _made(curve: Spline, pieces: Array, found: Pieces, k: int, allowed: Any, closed: bool, effort: str) -> Reduction:
-    """Return what was found for curve k as a reduction, with its matching and a lower bound."""
-    each = np.ndim(allowed) == 1
-    low = 3 * _lower_bound(pieces, allowed, closed, curve.rational, 3) + (not closed)
-    spline = _joined(curve, found, k, closed)
-    if spline is None:
-        return _itself(curve, effort, low, each)
-    path = slice(found.path[k], found.path[k + 1])
-    matching = Matching(found.s[path] + found.start[k], found.u[path], closed)
-    bound = float(found.bound[k]) if not each else found.bound[k] * np.asarray(allowed)
-    return Reduction(spline, bound, "geometric", (), low, None, matching, effort)
-
-
-def _joined(curve: Spline, found: Pieces, k: int, closed: bool) -> Spline | None:
-    """Return the curve of the pieces that were found for curve k; None if it is its own answer."""
-    own = found.nets[found.at[k] : found.at[k + 1]]
-    if not len(own):
-        return None
-    new = own[..., :-1] / own[..., -1:] if curve.rational else own
-    return joined(new, breaks_by_length(new, curve.space.domain, closed), closed and curve.space.periodic)
-
-
-def _itself(curve: Spline, effort: str, low: int, each: bool) -> Reduction:
+def _itself(shape: Shape, effort: str, low: int) -> Reduction:
     """Return the curve as its own reduction."""
-    along = np.arange(float(len(curve.space.breaks)))
-    closed = curve.space.periodic
-    bound = np.zeros(curve.dim) if each else 0.0
-    matching = Matching(along, along, closed)
-    return Reduction(curve, bound, "geometric", (), low, None, matching, effort)
+    along = np.arange(float(len(shape.pieces) + 1))
+    bound = np.zeros(shape.curve.dim) if shape.each else 0.0
+    matching = Matching(along, along, shape.curve.space.periodic)
+    return Reduction(shape.curve, bound, "geometric", (), low, None, matching, effort)
 
 
-def _polyline(
-    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, small: str
-) -> Reduction:
+def _polyline(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     """Return fewer straight edges of a polyline."""
-    if curve.space.degree == 1 and not curve.rational:
-        points = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
-    else:
+    curve, pieces, closed = shape.curve, shape.pieces, shape.closed
+    if curve.space.degree != 1 or curve.rational:
         raise ParameterError("form 'polyline' takes curves of degree 1; flatten others first")
+    points = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
     stay = np.zeros(len(points), bool)
-    *_, joints = _features(curve, pieces, keep)
-    stay[joints] = True
-    found = reduce_polyline(points, allowed, closed=closed, keep=stay, small=small, effort=effort)
-    low = _lower_bound(pieces, allowed, closed, False, 1) + (not closed)
-    vertices = found.vertices
-    edges = np.stack([vertices[:-1], vertices[1:]], axis=1)
-    if len(vertices) < 2:
-        raise ParameterError("the curve is within the tolerance of a point, and small='drop' leaves nothing of it")
+    stay[shape.stay.joints] = stay[turning(pieces, False, shape.stay.angle)] = True
+    if not closed:
+        stay[[0, -1]] = [order is not None for order in end_orders(wanted.ends)]
+    found = reduce_polyline(points, shape.allowed, closed=closed, keep=stay, ends="free", effort=wanted.effort)
+    low = _lower_bound(shape, 1) + (not closed)
+    edges = np.stack([found.vertices[:-1], found.vertices[1:]], axis=1)
     spline = joined(edges, breaks_by_length(edges, curve.space.domain, closed), closed and curve.space.periodic)
     matching = Matching(found.s, found.u, closed)
-    return Reduction(spline, found.bound, "geometric", (), low, None, matching, effort)
+    return Reduction(spline, found.bound, "geometric", (), low, None, matching, wanted.effort)
 
 
-def _smooth(
-    curve: Spline, pieces: Array, allowed: Any, closed: bool, effort: str, keep: Any, crossings: str
-) -> Reduction:
-    """Return a cubic spline with simple knots, but for corners."""
+def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
+    """Return a cubic spline with simple knots, but for corners; where none is found, cubic pieces that join."""
+    curve, allowed, closed = shape.curve, shape.allowed, shape.closed
     rational, periodic = curve.rational, closed and curve.space.periodic
-    angle, lines, joints = _features(curve, pieces, keep)
-    each = np.ndim(allowed) == 1
-    low = _lower_bound(pieces, allowed, closed, rational, 3) + (0 if closed else 3)
+    angle, lines, joints = shape.stay
     found = reduce_smooth(
-        pieces, allowed, closed=closed, periodic=periodic, angle=angle, lines=lines, keep=joints, effort=effort,
-        crossings=crossings, rational=rational,
+        shape.pieces, allowed, closed=closed, periodic=periodic, angle=angle, lines=lines, keep=joints,
+        effort=wanted.effort, crossings=wanted.crossings, rational=rational, progress=wanted.progress,
     )  # fmt: skip
-    if found is None or len(found.points) >= curve.space.dimension:
-        return _itself(curve, effort, low, each)
+    low = _lower_bound(shape, degree) + (0 if closed else degree)
+    if found is None:
+        return _bezier(shape, degree, wanted._replace(progress=None))
+    if len(found.points) >= curve.space.dimension:
+        return _itself(shape, wanted.effort, low)
     t = over_domain(found.lengths, curve.space.domain, periodic)
     if periodic:
         space = SplineSpace(3, np.append(np.repeat(t[:-1], found.times[:-1]), t[-1]), periodic=True)
     else:
         space = SplineSpace(3, np.concatenate([t[:1], np.repeat(t, found.times), t[-1:]]))
     spline = Spline(space, found.points)
-    (f, there), (g, here) = (nets(c, rational) for c in (curve, spline))
-    scaled = Scaled(f, g, allowed, rational=rational, given=there + here)
-    u, s, _ = scaled.refined(*_around(found, len(f), len(g)))
+    g, here = nets(spline, rational)
+    scaled = Scaled(shape.pieces, g, allowed, rational=rational, given=shape.off + here)
+    u, s, _ = scaled.refined(*_around(found, len(shape.pieces), len(g)))
     bound = scaled.bound(u, s)
     if not np.all(bound <= allowed):  # only rounding can make it so
-        return _itself(curve, effort, low, each)
-    return Reduction(spline, bound, "geometric", (), low, None, Matching(s, u, closed), effort)
+        return _bezier(shape, degree, wanted._replace(progress=None))
+    return Reduction(spline, bound, "geometric", (), low, None, Matching(s, u, closed), wanted.effort)
+
+
+#: how each form is found, and the degrees that it may have, that of choice last
+SEARCHES = {"spline": _smooth, "bezier": _bezier, "polyline": _polyline}
+DEGREES = {"spline": (3,), "bezier": (2, 3), "polyline": (1,)}
 
 
 def _around(found: Smooth, pieces: int, new: int) -> tuple[Array, Array]:
@@ -212,27 +257,6 @@ def _around(found: Smooth, pieces: int, new: int) -> tuple[Array, Array]:
     u[0], u[-1] = start, start + new
     s[-1] = s[0] + pieces
     return u, s
-
-
-def _features(curve: Spline, pieces: Array, keep: Any) -> tuple[float | None, bool, Array]:
-    """Return the angle above which joints are corners, whether lines of a curve stay, and pieces that still begin."""
-    angle: float | None = None
-    lines = False
-    joints: list[Array] = []
-    for each in [keep] if isinstance(keep, str) else list(keep if keep is not None else ()):
-        if each == "corners":
-            angle = CORNER
-        elif each == "lines":
-            lines = pieces.shape[1] > 2  # of a polyline every edge is one
-        elif isinstance(each, str):
-            known = ", ".join(FEATURES)
-            raise ParameterError(f"keep {each!r} given; for shapes expected {known}, or parameters of joints")
-        else:
-            at = np.flatnonzero(curve.space.breaks == each)
-            if not len(at):
-                raise ParameterError(f"keep {each!r} given; expected a knot of the curve, where two pieces join")
-            joints.append(at[at < len(pieces)])
-    return angle, lines, np.unique(np.concatenate(joints)).astype(np.int64) if joints else np.zeros(0, np.int64)
 
 
 def breaks_by_length(new: Array, domain: Sequence[Any], closed: bool) -> Array:
@@ -249,10 +273,11 @@ def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:
     return a + t * ((b - a) / t[-1]) if t[-1] > 0 else np.linspace(a, b, len(lengths) + 1)
 
 
-def _lower_bound(pieces: Array, allowed: Any, closed: bool, rational: bool, degree: int) -> int:
+def _lower_bound(shape: Shape, degree: int) -> int:
     """Return how many pieces there must be at least, from the ends of the given pieces."""
+    pieces, allowed = shape.pieces, shape.allowed
     ends = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
-    points = ends[:, :-1] / ends[:, -1:] if rational else ends
+    points = ends[:, :-1] / ends[:, -1:] if shape.curve.rational else ends
     if np.ndim(allowed) == 0 and not allowed > 0:
         return 1
-    return max(1, int(fewest_pieces(np.ascontiguousarray(points), allowed, degree, closed=closed)))
+    return max(1, int(fewest_pieces(np.ascontiguousarray(points), allowed, degree, closed=shape.closed)))

@@ -15,10 +15,10 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
+from knotwork.removal.result import Progress, part_of, tell
 from knotwork.removal.shapes import corners
-from knotwork.removal.shapes.bezier import ALLOWED, Curves, efforts, prepared, searched
+from knotwork.removal.shapes.bezier import ALLOWED, Curves, as_pieces, efforts, prepared, searched
 from knotwork.removal.shapes.frame import DEGREE, descended_frame, framed, netted
-from knotwork.removal.shapes.greedy import as_cubic
 from knotwork.removal.shapes.knots import mended, thinned, tightened
 from knotwork.removal.shapes.repair import FORCED, interpolated
 from knotwork.removal.shapes.residuals import FAIR
@@ -66,7 +66,7 @@ class Smooth(NamedTuple):
 
 def reduce_smooth(
     nets: Array, tolerance: Any, *, closed: bool, periodic: bool, angle: float | None, lines: bool, keep: Any,
-    effort: str, crossings: str, rational: bool,
+    effort: str, crossings: str, rational: bool, progress: Progress | None = None,
 ) -> Smooth | None:  # fmt: skip
     """Return a smooth spline within a distance of one curve, or none; its distance is still to be proven.
 
@@ -78,17 +78,17 @@ def reduce_smooth(
     if not given.possible:
         return None
     F, hard, unit = given.nets, given.hard, given.unit
-    found = searched(given, how)[0]
+    found = searched(given, how, DEGREE, part_of(progress, 0, 2))[0]
     q, d = F.shape[1] - 1, len(unit)
     if not len(found.G):
         if rational or q > DEGREE:
             return None
-        found = _as_pieces(F)
+        found = as_pieces(F)
     most = ALLOWED * (len(F) + 4)
     count = counted(F, given.at, 1 / unit, extent(d))
     size = count + count // 2 + 64
     room = min(most, 4 * len(found.G) + size)
-    search = SmoothSearch(F, hard, given, how[0], SMOOTHINGS[effort], size, room)
+    search = SmoothSearch(F, hard, given, how[0], SMOOTHINGS[effort], size, room, part_of(progress, 1, 2))
     path = search.smoothed(found)
     if path is None:
         return None
@@ -105,10 +105,11 @@ class SmoothSearch(Search):
     """Working space for one curve, and the search for few knots."""
 
     def __init__(
-        self, F: Array, hard: Array, given: Curves, effort: Effort, how: Smoothing, size: int, pieces: int
-    ) -> None:
+        self, F: Array, hard: Array, given: Curves, effort: Effort, how: Smoothing, size: int, pieces: int,
+        progress: Progress | None,
+    ) -> None:  # fmt: skip
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
-        self.F, self.hard, self.effort, self.how = F, hard, effort, how
+        self.F, self.hard, self.effort, self.how, self.progress = F, hard, effort, how, progress
         self.target, self.most = float(given.target()[0]), pieces - 8
         self.count = self.end = self.last = 0
 
@@ -126,9 +127,10 @@ class SmoothSearch(Search):
     def thinner(self) -> Found | None:
         """Take out knots, and prove what is left."""
         at = self.room.frame.at
-        for _ in range(self.how.passes):
+        for k in range(self.how.passes):
             before = at[self.count - 1]
             self._thinned()
+            tell(self.progress, (k + 1) / (self.how.passes + 1))
             if at[self.count - 1] == before:
                 break
         return self._certified(self.F, self.end, self.last, self.count, self.most, self.target, self.effort)[0]
@@ -272,15 +274,6 @@ class SmoothSearch(Search):
             frame.h[:count].copy(), times, np.ldexp(points, given.exponent), path.u, path.s,
             (int(given.start[0]) + turned) % len(F), periodic,
         )  # fmt: skip
-
-
-def _as_pieces(F: Array) -> Found:
-    """Return a curve of degree 3 or less as its own pieces."""
-    G = np.zeros((len(F), DEGREE + 1, F.shape[2]))
-    for net, out in zip(F, G, strict=True):
-        as_cubic(net, out, extent(F.shape[2]))
-    along = np.arange(len(F) + 1.0)
-    return Found(G, along, along, 0.0)
 
 
 def _points(G: Array, u: Array) -> Array:
