@@ -283,6 +283,7 @@ def test_plain_and_compiled_agree_on_shapes(both):
     edges = np.stack([line[:-1], line[1:]], axis=1)
     for effort, closed in (("normal", True), ("best", False)):
         reduce_bezier(edges, [0, 12, 29], [0.3, 0.2], closed=closed, angle=170.0, keep=[5], lines=True, effort=effort)
+    reduce_bezier(edges, [0, 12, 29], 0.3, degree=2, effort="best")
     wild = np.cumsum(np.random.default_rng(2).standard_normal((12, 2)) * 6, axis=0)
     reduce_bezier(np.stack([wild[:-1], wild[1:]], axis=1), [0, 11], 2.0)  # one that needs repair
     around = {"closed": True, "periodic": True, "angle": None, "lines": False, "keep": (), "rational": False}

@@ -29,7 +29,9 @@ IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
     required=True,
     help="Largest error: a length, or as in 0.1% of the extent.",
 )
-@click.option("-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree to this one first.")
+@click.option(
+    "-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree first; of shapes, that of pieces."
+)
 @click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="At equal parameters, or of shapes.")
 @click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), help="What shapes become.")
 @click.option("--effort", type=click.Choice(["fast", "normal", "best"]), default="normal", help="[default: normal]")
@@ -94,12 +96,17 @@ def reduce(
         between = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
 
         def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, Any]:
-            for axis, given in enumerate(spline.degree):
+            shape = between == "geometric"
+            for axis, given in enumerate(() if shape else spline.degree):
                 spline = kw.elevate(spline, max(0, (degree or 0) - given), axis)
-            kept: Any = (features if between == "geometric" else features[0]) if features else None
-            reduction = kw.reduce(
-                spline, allowed, distance=between, form=made, effort=effort, keep=kept, progress=progress
-            )
+            kept: Any = (features if shape else features[0]) if features else None
+            how: dict[str, Any] = {
+                "distance": between,
+                "form": made,
+                "effort": effort,
+                "degree": degree if shape else None,
+            }
+            reduction = kw.reduce(spline, allowed, **how, keep=kept, progress=progress)
             return upside_down(reduction.spline) if flip else reduction.spline, reduction.bound
 
         return job.one(file, output, change, tolerance, "reducing", even_if_longer=even_if_longer)

@@ -213,7 +213,7 @@ def fewest_of_closed(spline: Spline) -> int:
     P = spline.points.reshape(len(spline.points), -1)
     planar = P.shape[1] > 1 or P.dtype.kind == "c"
     closed = spline.space.periodic or bool((P[0] == P[-1]).all())
-    if not planar or not closed or not (P != P[0]).any():
+    if not planar or not closed or not (P[0] != P).any():
         return 1
     return 3 if spline.space.periodic else 4 if spline.space.degree == 1 else spline.space.order
 
