@@ -172,6 +172,8 @@ class Kernel:
             with _lock:
                 if self._compiled is None:
                     bound = self._bound({name: callee.compiled for name, callee in self._callees()})
+                    if self.names:  # what came from the cache is linked by name, and a variant shares its own
+                        bound.__qualname__ += f"_{self.digest}"
                     self._compiled = _compile(bound, self.digest, self.options)
         return self._compiled
 
@@ -184,6 +186,8 @@ class Kernel:
         how = (self.options, self.source.__module__, os.environ.get("NUMBA_BOUNDSCHECK", ""))
         hasher = hashlib.sha256(repr(how).encode())
         _hash_code(hasher, self.source.__code__)
+        if self.names:
+            hasher.update(b"variant")  # which is linked by a name of its own
         hasher.update(repr(self.source.__defaults__).encode())
         for name in self.source.__code__.co_names:
             value = self.source.__globals__.get(name)
