@@ -84,6 +84,7 @@ def test_every_command_has_help_with_an_example(run):
 def test_the_face_of_the_command(run):
     assert set(main.commands) == {
         "batch",
+        "intersect",
         "info",
         "insert",
         "edit",
