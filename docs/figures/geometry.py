@@ -66,6 +66,25 @@ def _met(axes, a, b, u):
     axes.set_aspect("equal", adjustable="datalim")
 
 
+def offsets():
+    """Draw curves beside an arch, and the three ways around a corner."""
+    figure, axes = plt.subplots(1, 4, figsize=(9, 2.6), layout="constrained", width_ratios=[2, 1, 1, 1])
+    u = np.linspace(0, 1, 400)
+    arch = kw.curve([[0, 0], [1, 3], [2, -2], [4, 3], [5, 0]])
+    for d in (-0.5, -0.25, 0.25, 0.5):
+        axes[0].plot(*kw.offset(arch, d, 1e-3).spline(u).T, color=INK, lw=0.8)
+    axes[0].plot(*arch(u).T, color=NET, lw=3)
+    corner = kw.curve([[0, 0], [1.5, 0], [0.9, 1.2]], 1)
+    for side, how in zip(axes[1:], ("round", "mitre", "bevel"), strict=True):
+        side.plot(*corner(u).T, color=NET, lw=3)
+        beside = kw.offset(corner, -0.4, 1e-3, joins=how).spline
+        side.plot(*beside.with_domain(0, 1)(u).T, color=INK, lw=1)
+        side.set_title(how, fontsize=9)
+    for each in axes:
+        each.set_aspect("equal")
+    save(figure, "offset.png", dpi=110)
+
+
 def main():
     """Draw zeros of a function, and what is found on a curve."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
@@ -89,5 +108,6 @@ def main():
 
 if __name__ == "__main__":
     main()
+    offsets()
     crossings()
     mesh()

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
         Line,
         Measured,
         Mesh,
+        Offset,
         Plane,
         Polyline,
         Zeros,
@@ -66,6 +67,7 @@ if TYPE_CHECKING:
         intersect,
         length,
         normals,
+        offset,
         zeros,
     )
     from knotwork.insertion import (
@@ -115,6 +117,7 @@ __all__ = [
     "Measured",
     "Mesh",
     "MissingExtraError",
+    "Offset",
     "ParameterError",
     "Plane",
     "PointError",
@@ -168,6 +171,7 @@ __all__ = [
     "length",
     "lower",
     "normals",
+    "offset",
     "open",
     "plot",
     "progressive",
@@ -237,6 +241,7 @@ _PARTS = {
         "Line",
         "Measured",
         "Mesh",
+        "Offset",
         "Plane",
         "Polyline",
         "Zeros",
@@ -253,6 +258,7 @@ _PARTS = {
         "intersect",
         "length",
         "normals",
+        "offset",
         "zeros",
     ),
     "insertion": (

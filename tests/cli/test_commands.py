@@ -96,6 +96,7 @@ def test_the_face_of_the_command(run):
         "convert-space",
         "count",
         "methods",
+        "offset",
         "plot",
         "close",
         "elevate",

@@ -16,6 +16,7 @@ from knotwork.cli.terminal import Tolerance
 
 if TYPE_CHECKING:
     from knotwork.conversion.face import How
+    from knotwork.geometry.offsetting import Joins
 
 
 @main.command(short_help="Insert knots: more control points, the same shape.")
@@ -100,6 +101,32 @@ def bezier(job: Job) -> None:
     from knotwork.insertion.pieces import in_bezier_form
 
     job.run(lambda spline: (in_bezier_form(spline), 0.0))
+
+
+@main.command(short_help="Curves at a distance beside plane curves.")
+@job
+@click.option("-d", "--distance", type=float, required=True, help="To the left of each curve; negative: to the right.")
+@click.option("-t", "--tolerance", type=terminal.tolerance, default="0.01%", help="[default: 0.01% of the extent]")
+@click.option(
+    "--joins", type=click.Choice(["round", "mitre", "bevel"]), default="round", help="Around corners.  [default: round]"
+)
+def offset(job: Job, distance: float, tolerance: Tolerance, joins: Joins) -> None:
+    """Replace the plane curves of FILE by those at a distance to their left, as seen along the parameter.
+
+    In an SVG drawing, whose y axis points down, that is the right side on the screen. The bound in the report is
+    proven: so far is a point at most from where it should be, at equal parameters.
+
+    \b
+    Examples:
+      knotwork offset drawing.svg -d 2 -o inside.svg
+      knotwork offset curve.json -d -0.5 -t 1e-6 --joins mitre -o beside.json
+    """
+
+    def change(spline: kw.Spline, allowed: float) -> tuple[kw.Spline, Any]:
+        found = kw.offset(spline, distance, allowed, joins=joins)
+        return found.spline, found.bound
+
+    job.run(change, tolerance)
 
 
 @main.command("convert-space", short_help="Convert to other knots or another degree.")

@@ -10,6 +10,7 @@ from knotwork.geometry.local_shape import curvature, frame, normals
 from knotwork.geometry.measures import Measured, area, by_length, centroid, length
 from knotwork.geometry.meshing import Mesh
 from knotwork.geometry.nearest import Closest
+from knotwork.geometry.offsetting import Offset, offset
 from knotwork.geometry.roots import Zeros, zeros
 from knotwork.geometry.turning import corners, extrema, inflections
 
@@ -19,6 +20,7 @@ __all__ = [
     "Line",
     "Measured",
     "Mesh",
+    "Offset",
     "Plane",
     "Polyline",
     "Zeros",
@@ -35,5 +37,6 @@ __all__ = [
     "intersect",
     "length",
     "normals",
+    "offset",
     "zeros",
 ]

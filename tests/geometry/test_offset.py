@@ -1,0 +1,199 @@
+"""Curves beside a curve: where they are, worked out again by mpmath; joins by the areas they go round."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import knotwork as kw
+from knotwork.errors import ParameterError, PointError, SizeError
+
+RING = [[1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]]
+CIRCLE = kw.curve(RING, 2, [0, 0, 1, 1, 2, 2, 3, 3, 4], weights=[0.5**0.5, 1] * 4, periodic=True)
+SQUARE = kw.curve([[0, 0], [2, 0], [2, 2], [0, 2]], 1, periodic=True)
+ARCH = kw.curve([[0, 0], [1, 2], [3, 2], [4, 0]])
+
+
+def bezier(net, t, order=0):
+    """Return the point of a Bézier curve in mpmath, or its derivative, by the definition."""
+    n = len(net) - 1
+    if order:
+        return [n * x for x in bezier([[b - a for a, b in zip(p, q, strict=True)] for p, q in pairwise(net)], t)]
+    basis = [math.comb(n, i) * t**i * (1 - t) ** (n - i) for i in range(n + 1)]
+    return [mpmath.fsum(b * p[k] for b, p in zip(basis, net, strict=True)) for k in range(len(net[0]))]
+
+
+def beside(curve, u, d):
+    """Return c(u) + d n(u) in mpmath, of the exact pieces of the curve."""
+    nets, breaks = kw.to_bezier(curve.in_exact_arithmetic())
+    i = min(int(np.searchsorted(breaks.astype(float), float(u), "right")) - 1, len(nets) - 1)
+    a, b = (mpmath.mpf(x.numerator) / x.denominator for x in breaks[i : i + 2])
+    net = [[mpmath.mpf(x.numerator) / x.denominator for x in p] for p in np.asarray(nets[i]).tolist()]
+    t = (u - a) / (b - a)
+    p, v = bezier(net, t), bezier(net, t, 1)
+    if curve.rational:
+        x, y, w = p
+        p, v = [x / w, y / w], [v[0] * w - x * v[2], v[1] * w - y * v[2]]
+    size = mpmath.hypot(*v)
+    return [p[0] - d * v[1] / size, p[1] + d * v[0] / size]
+
+
+def farthest(curve, d, found, per=5):
+    """Return the largest distance from c + d n found at some parameters within each part."""
+    nets, breaks = kw.to_bezier(found.spline)
+    at = found.parameters
+    assert len(at) == len(breaks)
+    worst = mpmath.mpf(0)
+    with mpmath.workdps(40):
+        for net, a, b in zip(nets, at, at[1:], strict=False):
+            net = [[mpmath.mpf(float(x)) for x in p] for p in net]
+            for k in range(1, per + 1) if b > a else ():
+                t = mpmath.mpf(k) / (per + 1)
+                there = beside(curve, mpmath.mpf(float(a)) + t * (mpmath.mpf(float(b)) - mpmath.mpf(float(a))), d)
+                here = bezier(net, t)
+                worst = max(worst, mpmath.hypot(here[0] - there[0], here[1] - there[1]))
+    return float(worst)
+
+
+@settings(max_examples=15)
+@given(
+    st.integers(0, 10**6),
+    st.integers(2, 5),
+    st.booleans(),
+    st.booleans(),
+    st.sampled_from([0.1, -0.7]),
+    st.sampled_from([1e-2, 1e-5]),
+)
+def test_the_bound_holds_at_equal_parameters(seed, degree, rational, periodic, d, tolerance):
+    random = np.random.default_rng(seed)
+    points = random.integers(-9, 10, (degree + 4, 2)) + random.random((degree + 4, 2))
+    weights = random.uniform(0.5, 2, len(points)) if rational else None
+    curve = kw.curve(points, degree, weights=weights, periodic=periodic)
+    found = kw.offset(curve, d, tolerance)
+    assert found.bound <= tolerance
+    assert farthest(curve, d, found, 2) <= found.bound
+    assert found.spline.space.periodic == periodic
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_the_bound_is_near_what_it_bounds(tolerance):
+    found = kw.offset(ARCH, -0.5, tolerance)
+    worst = farthest(ARCH, -0.5, found)
+    assert worst <= found.bound <= min(2 * worst, tolerance)
+
+
+@pytest.mark.parametrize(("d", "radius"), [(0.25, 0.75), (-0.5, 1.5), (1.75, 0.75)])
+def test_a_circle_counterclockwise_has_its_left_inside(d, radius):
+    found = kw.offset(CIRCLE, d, 1e-7)
+    assert found.spline.space.periodic
+    r = np.linalg.norm(found.spline(np.linspace(0, 4, 203)), axis=1)
+    assert abs(r - radius).max() <= found.bound <= 1e-7
+    assert found.spline.space.domain == (0, 4)
+
+
+def test_a_line_is_one_line():
+    found = kw.offset(kw.curve([[1, 1], [4, 5]], 1), 5, 1e-12)
+    assert found.spline.points == pytest.approx(np.linspace([-3, 4], [0, 8], 4), abs=1e-14)
+    assert kw.offset(kw.elevate(kw.curve([[1, 1], [4, 5]], 1), 6), 5, 1e-12).spline.space.dimension == 4
+
+
+def test_joins_around_a_square():
+    r = 0.5
+    areas = {"round": 4 + 8 * r + math.pi * r * r, "mitre": (2 + 2 * r) ** 2, "bevel": 4 + 8 * r + 2 * r * r}
+    for how, area in areas.items():
+        found = kw.offset(SQUARE, -r, 1e-7, joins=how)
+        assert found.spline.space.periodic
+        assert float(kw.area(found.spline).value) == pytest.approx(area, abs=1e-6 if how == "round" else 1e-12)
+        away = kw.closest(SQUARE, found.spline(np.linspace(*found.spline.space.domain, 301))).distances
+        if how == "round":
+            assert abs(away - r).max() <= found.bound
+    inner = kw.offset(SQUARE, r, 1e-7)
+    assert not (inner.spline.points == 0).all()
+    assert len(kw.intersect(inner.spline).points) >= 4  # nothing is cut away
+
+
+def test_a_sharp_mitre_is_cut_off():
+    spike = kw.curve([[0, 0], [4, 0.25], [0, 0.5]], 1)
+    assert kw.offset(spike, -1, 1e-6, joins="mitre").spline == kw.offset(spike, -1, 1e-6, joins="bevel").spline
+
+
+def test_back_the_way_it_came_is_half_a_turn():
+    for d in (1, -1):
+        found = kw.offset(kw.curve([[0, 0], [2, 0], [0, 0]], 1), d, 1e-6)
+        ends = found.spline(np.linspace(*found.spline.space.domain, 301))
+        assert ends[:, 0].max() == pytest.approx(3, abs=1e-3)
+        assert kw.closest(kw.curve([[0, 0], [2, 0]], 1), ends).distances == pytest.approx(1, abs=1e-6)
+
+
+def test_an_ellipse_beyond_its_radius_of_curvature():
+    ellipse = CIRCLE.transform([[3, 0], [0, 1]])
+    found = kw.offset(ellipse, 2, 1e-4)
+    assert farthest(ellipse, 2, found, 2) <= found.bound <= 1e-4
+    assert found.spline.space.periodic
+
+
+def test_closed_open_and_torn():
+    lap = kw.clamp(SQUARE)
+    closed = kw.offset(lap, -0.5, 1e-6).spline
+    assert (closed.points[0] == closed.points[-1]).all()
+    assert float(kw.area(closed).value) == pytest.approx(8 + math.pi / 4, abs=1e-5)
+    torn = kw.Spline(kw.SplineSpace(1, [0, 0, 1, 1, 2, 2]), [[0.0, 0], [1, 0], [1, 1], [2, 1]])
+    assert kw.offset(torn, 1, 1e-6).spline([0.5, 1.5]).round(12).tolist() == [[0.5, 1], [1.5, 2]]
+
+
+def test_handles_of_no_length_and_pieces_of_none():
+    still = kw.curve([[0, 0], [0, 0], [1, 2], [3, 2], [3, 2]], 4)
+    found = kw.offset(still, 0.5, 1e-5)
+    assert farthest(still, 0.5, found) <= found.bound
+    exact = kw.offset(still.in_exact_arithmetic(), 0.5, 1e-5)
+    assert exact.spline == found.spline
+    pause = kw.curve([[0, 0], [1, 0], [1, 0], [2, 0]], 1)
+    assert kw.offset(pause, 1, 1e-9).spline([0, 1]).tolist() == [[0, 1], [2, 1]]
+
+
+def test_a_small_distance_and_none():
+    for d in (0, 1e-9):
+        assert farthest(ARCH, d, kw.offset(ARCH, d, 1e-6)) <= 1e-6
+
+
+@pytest.mark.parametrize("far", [1e6, 1e9])
+def test_rounding_far_from_the_origin_counts(far):
+    curve = kw.curve(ARCH.points + far)
+    found = kw.offset(curve, -0.5, 1e-4 if far > 1e8 else 1e-7)
+    assert farthest(curve, -0.5, found, 2) <= found.bound
+
+
+def test_what_is_refused():
+    for wrong in (0, -1, float("nan"), float("inf"), [1, 2], "x"):
+        with pytest.raises(ParameterError, match="tolerance"):
+            kw.offset(ARCH, 1, wrong)
+    for wrong in (float("nan"), float("inf"), [1], "x"):
+        with pytest.raises(ParameterError, match="distance"):
+            kw.offset(ARCH, wrong, 1e-3)
+    with pytest.raises(ParameterError, match="joins; expected 'round', 'mitre' or 'bevel'; did you mean 'mitre'"):
+        kw.offset(ARCH, 1, 1e-3, joins="miter")
+    with pytest.raises(PointError, match="3-D given; expected a curve in the plane"):
+        kw.offset(kw.curve(np.eye(4, 3)), 1, 1e-3)
+    with pytest.raises(ParameterError, match="expected a curve"):
+        kw.offset(kw.surface(np.zeros((4, 4, 2))), 1, 1e-3)
+    with pytest.raises(ParameterError, match="one point"):
+        kw.offset(kw.curve([[1, 1]] * 4), 1, 1e-3)
+    with pytest.raises(ParameterError, match="rounding alone is"):
+        kw.offset(ARCH, 1, 1e-17)
+    with pytest.raises(ParameterError, match="stands still"):
+        kw.offset(kw.curve([[0, 0], [1, 1], [0, 1], [1, 0]]), 0.3, 1e-6)  # a cusp in the middle
+    with pytest.raises(SizeError, match="more than 65536 pieces"):
+        kw.offset(kw.curve(ARCH.points * 1e200), 1, 1e-3)
+
+
+def test_a_cusp_where_the_curve_was_split():
+    halves = kw.split(kw.curve([[0, 0], [1, 1], [0, 1], [1, 0]]), 0.5)
+    for half in halves:
+        found = kw.offset(half, 0.3, 1e-6)
+        assert farthest(half, 0.3, found) <= found.bound
