@@ -257,6 +257,18 @@ def test_remove_all_from_a_closed_curve_keeps_the_seam_once(run):
     assert dot.space.knots.tolist() == [0, 1]
 
 
+def test_offset_of_a_file_and_of_a_drawing(run, curve):
+    told = run("offset", "curve.json", "-d", "-0.5", "-t", "1e-5", "-o", "beside.json").stdout
+    assert "tolerance 1e-05" in told
+    assert read("beside.json") == [kw.offset(curve, -0.5, 1e-5).spline]
+    write("square.svg", kw.curve([[0, 0], [2, 0], [2, 2], [0, 2]], 1, periodic=True))
+    run("offset", "square.svg", "-d", "-1", "--joins", "mitre", "-o", "wide.svg")
+    (wide,) = read("wide.svg")
+    assert wide.bounds == pytest.approx(np.array([[-1, -1], [3, 3]]), abs=1e-9)
+    assert "tolerance" in run("offset", "curve.json", "-d", "1", "-t", "0", "-o", "none.json", code=1).stderr
+    assert not Path("none.json").exists()
+
+
 def test_bezier_form(run, curve):
     run("bezier", "curve.json", "-o", "pieces.json")
     (pieces,) = read("pieces.json")

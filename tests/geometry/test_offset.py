@@ -154,12 +154,27 @@ def test_handles_of_no_length_and_pieces_of_none():
     exact = kw.offset(still.in_exact_arithmetic(), 0.5, 1e-5)
     assert exact.spline == found.spline
     pause = kw.curve([[0, 0], [1, 0], [1, 0], [2, 0]], 1)
-    assert kw.offset(pause, 1, 1e-9).spline([0, 1]).tolist() == [[0, 1], [2, 1]]
+    u = np.linspace(0, 1, 13)
+    assert kw.offset(pause, 1, 1e-9).spline(u) == pytest.approx(pause(u) + np.array([0, 1]), abs=1e-12)
+    corner = kw.curve([[0, 0], [1, 0], [1, 0], [1, 1]], 1)
+    for how in ("round", "mitre", "bevel"):
+        found = kw.offset(corner, -1, 1e-3, joins=how)
+        assert (np.diff(found.parameters) >= 0).all()
+        assert set(found.parameters) == set(corner.space.breaks)
 
 
 def test_a_small_distance_and_none():
     for d in (0, 1e-9):
         assert farthest(ARCH, d, kw.offset(ARCH, d, 1e-6)) <= 1e-6
+
+
+def test_pieces_that_are_short_beside_their_distance_from_the_origin_stay():
+    random = np.random.default_rng(8)
+    for weights in (None, random.uniform(0.5, 2, 12)):
+        curve = kw.curve(random.standard_normal((12, 2)) + np.array([1e7, -1e7]), 3, weights=weights)
+        found = kw.offset(curve, 0.1, 1e-3)
+        assert set(curve.space.breaks) <= set(found.parameters)
+        assert farthest(curve, 0.1, found, 2) <= found.bound
 
 
 @pytest.mark.parametrize("far", [1e6, 1e9])

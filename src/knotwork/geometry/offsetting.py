@@ -50,7 +50,7 @@ class Offset(NamedTuple):
     spline: Spline
     #: no point of the spline is farther from that of the offset curve at the same parameter
     bound: float
-    #: of the curve, one for each break of the spline, and linear between; equal at both ends of a join
+    #: of the curve, one for each break of the spline, and linear between; a join has one parameter, or those of a pause
     parameters: Array
 
 
@@ -179,9 +179,13 @@ def _offset(curve: Spline, d: float, tolerance: float, joins: Joins) -> Offset:
             join, off = _join(last[i], *ends, tangent[1][i], tangent[0][j], d, joins, tolerance)
             worst = max(worst, off)
             nets.append(join)
-            parameters.append(np.full(len(join), end[i]))
+            parameters.append(np.where(np.arange(len(join)), max(start[j], end[i]), end[i]))
             joins_before += range(count, count + len(join))
             count += len(join)
+        elif following[i] and start[following[i]] > end[i]:  # the curve pauses
+            nets.append(np.broadcast_to(q[stops[i + 1] - 1, -1], (1, 4, 2)))
+            parameters.append(end[i : i + 1])
+            joins_before.append(count)
     closed = bool(curve.space.periodic and meets.all())
     at = np.append(np.concatenate(parameters), end[-1])
     share = (end[-1] - start[0]) / len(first)
@@ -206,9 +210,10 @@ def _moving(curve: Spline) -> tuple[list[Pieces], Array, Array]:
     P = np.stack([h.c / H[2].c for h in H[:2]], axis=2)
     still = np.zeros(len(P))
     if curve.rational or any(h.e.any() for h in H):
-        with np.errstate(over="ignore"):
-            off = sum(4 * (h.e + UNIT * abs(h.c)).max(axis=1) for h in H) * (1 + abs(P).max(axis=(1, 2)))
-            still = off / H[2].c.min(axis=1)
+        off = [
+            (h.e + abs(p) * H[2].e) / H[2].c + 2 * UNIT * abs(p) for h, p in zip(H[:2], P.T.swapaxes(1, 2), strict=True)
+        ]
+        still = 4 * np.max(off, axis=(0, 2))
     moves = np.ptp(P, axis=1).max(axis=1) > still
     if not moves.any():
         raise ParameterError("a curve that is one point given; expected one with a direction")
