@@ -41,6 +41,11 @@ IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 @click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
 @click.option("--precision", type=click.IntRange(-6, 17), help="Digits after the point in a drawing.")
 @click.option("--shared-borders", is_flag=True, help="Borders that areas of a map share stay shared.")
+@click.option(
+    "--no-crossings",
+    is_flag=True,
+    help="Lines of a map or a track cross themselves and each other only where they did.",
+)
 @click.option("--together", is_flag=True, help="Files are masters of one family of fonts: points stay the same in all.")
 @flip
 def reduce(
@@ -54,6 +59,7 @@ def reduce(
     even_if_longer: bool,
     precision: int | None,
     shared_borders: bool,
+    no_crossings: bool,
     together: bool,
     flip: bool,
 ) -> None:
@@ -72,6 +78,7 @@ def reduce(
       knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
       knotwork reduce countries.geojson --shared-borders -t 0.05 -o small.geojson
+      knotwork reduce coast.geojson --no-crossings -t 1% -o small.geojson
       knotwork reduce Font.otf --glyphs a,b,U+0041 -t 1 -o out.otf
       knotwork reduce Light.otf Bold.otf --together -t 1 -o masters/
     """
@@ -89,8 +96,12 @@ def reduce(
             return _font(job, file, output, tolerance, features)
         drawn = kind.module in IN_PLACE and (output is None or output == STREAM or format_of(output) is kind)
         if drawn and distance != "parametric" and form in (None, IN_PLACE[kind.module]) and degree is None and not flip:
-            how = {"effort": effort, "precision": precision, "shared": shared_borders}
+            how = {"effort": effort, "precision": precision, "shared": shared_borders, "no_crossings": no_crossings}
             return _lighter(job, file, output, tolerance, even_if_longer, **how)
+        if no_crossings:
+            raise click.UsageError(
+                "--no-crossings is for maps and tracks whose lines stay lines: GeoJSON and GPX in place"
+            )
         shapes = distance is None and degree is None and kind.shapes
         made = form or ("polyline" if shapes and kind.module != "svg" else "spline")
         between = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
@@ -131,7 +142,7 @@ def _lighter(
     document = job.reading.document(file)
     start = time.perf_counter() - compiling.seconds()
     allowed = tolerance.value * document.extent() if tolerance.relative else tolerance.value
-    found = lighter(document, allowed, **how)
+    found = lighter(document, allowed, **how, even_if_longer=even_if_longer)
     data, rounded = found.document.packed(output or file, even_if_longer=even_if_longer)
     seconds = time.perf_counter() - compiling.seconds() - start
     bound = found.bound + rounded
@@ -139,11 +150,17 @@ def _lighter(
         save(output, data)
     sizes = (document.size, len(data))
     if job.as_json:
-        told = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed, "bound": bound}
-        return told | {"distance": "geometric", "segments": list(found.segments), "bytes": list(sizes)}
+        told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed}
+        told |= {"bound": bound, "distance": "geometric", "segments": list(found.segments), "bytes": list(sizes)}
+        if found.crossings:
+            told["crossings"] = {k: [getattr(c, k) for c in found.crossings] for k in ("own", "others")}
+        return told
     before, after = found.segments
     job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g} between shapes")
     job.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
+    if found.crossings:
+        (own, others), (own_after, others_after) = found.crossings
+        job.echo(f"crossings of a line with itself {own:,} → {own_after:,}, with others {others:,} → {others_after:,}")
     job.echo(f"no point is farther than {report.upward(bound):.6g} from where it was: proven, rounding included")
     job.echo(written_to(output, 0.0))
     return None

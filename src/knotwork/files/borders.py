@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.files.lines import corners
+from knotwork.files.lines import corners, polyline
 from knotwork.geometry.lengths import increasing
-from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 Vertex = tuple[float, ...]
+#: reduces polylines but for those that stay whole, given by their numbers
+Way = Callable[[list[Spline], Collection[int]], list[tuple[Spline, float]]]
 
 
 class Piece(NamedTuple):
@@ -59,28 +60,33 @@ class Arcs:
             self.arcs.append(list(key))
         return Piece(self._known[key], key != forward)
 
-    def reduced(self, reduce: Callable[[Spline], tuple[Spline, float]]) -> tuple[list[Spline], list[float]]:
-        """Return the polylines put together of arcs that a function reduces, each once, and how far each moved.
+    def reduced(self, reduce: Way, whole: Collection[int] = ()) -> list[tuple[Spline, float]]:
+        """Return the polylines put together of arcs that were reduced, each once, and how far each polyline moved.
 
         Parameters
         ----------
         reduce : callable
-            Takes an open polyline, or a closed one where a whole line is alone, and returns it reduced over the same
-            domain with the same ends, and the bound.
+            Takes polylines, closed ones where a whole line is alone, and which of them stay as they are; returns each
+            reduced over the same domain with the same ends, and the bound.
+        whole : collection of int
+            Which of the polylines stay as they are, with what others share with them.
         """
-        done = [_reduced(arc, reduce) for arc in self.arcs]
-        results, bounds = [], []
+        stay = {piece.arc for i in whole for piece in self.pieces[i]}
+        arcs = [_spline(arc) for arc in self.arcs]
+        while True:
+            done = [(*corners(spline, "an arc"), bound) for spline, bound in reduce(arcs, stay)]
+            rings = [self.pieces[i] for i, spline in enumerate(self.splines) if spline.space.periodic]
+            small = [pieces for pieces in rings if sum(len(done[piece.arc][0]) - 1 for piece in pieces) < 3]
+            more = {piece.arc for pieces in small for piece in pieces} - stay
+            if not more:
+                break
+            stay |= more  # an area stays one, and so do its borders on the other side
+        results = []
         for spline, pieces, start in zip(self.splines, self.pieces, self.starts, strict=True):
             chosen = [done[piece.arc] for piece in pieces]
-            if spline.space.periodic and sum(len(points) - 1 for points, _, _ in chosen) < 3:
-                chosen = [_reduced(self.arcs[piece.arc], None) for piece in pieces]  # an area stays one
             points, t = _together(chosen, pieces, start)
-            if spline.space.periodic:
-                results.append(Spline(SplineSpace(1, t, periodic=True), points[1:]))
-            else:
-                results.append(Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points))
-            bounds.append(max(bound for _, _, bound in chosen))
-        return results, bounds
+            results.append((polyline(points, t, spline.space.periodic), max(bound for _, _, bound in chosen)))
+        return results
 
 
 def _opened(part: list[Vertex], forks: set[Vertex]) -> list[list[Vertex]]:
@@ -106,18 +112,10 @@ def _forks(lines: list[list[Vertex]]) -> set[Vertex]:
     return forks
 
 
-def _reduced(arc: list[Vertex], reduce: Callable[[Spline], tuple[Spline, float]] | None) -> tuple[Array, Array, float]:
-    """Return the points of an arc that was reduced, where they were on it, and how far it moved."""
-    points = np.array(arc)
-    loop = arc[0] == arc[-1]
-    t = increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), loop)
-    if reduce is None or len(points) < 3:
-        return points, t, 0.0
-    if loop:
-        spline, bound = reduce(Spline(SplineSpace(1, t, periodic=True), points[1:]))
-    else:
-        spline, bound = reduce(Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points))
-    return *corners(spline, "an arc"), bound
+def _spline(arc: list[Vertex]) -> Spline:
+    """Return an arc over its lengths."""
+    points, loop = np.array(arc), arc[0] == arc[-1]
+    return polyline(points, increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), loop), loop)
 
 
 def _together(chosen: list[tuple[Array, Array, float]], pieces: list[Piece], start: float) -> tuple[Array, Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -11,10 +12,11 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
 from knotwork.files.borders import Arcs
 from knotwork.files.document import Document
-from knotwork.files.lines import paced
+from knotwork.files.lines import DIGITS, Lines, digits_for, number, paced
+from knotwork.files.uncrossed import Crossings, Reduce, apart, count_crossings, uncrossed
 from knotwork.geometry.bezier import joined, raised
 from knotwork.insertion import to_bezier
-from knotwork.removal import reduce
+from knotwork.removal import reduce as reduce_one
 from knotwork.removal.shapes.bezier import EFFORTS, reduce_bezier
 from knotwork.removal.shapes.features import CORNER
 from knotwork.removal.shapes.reducing import breaks_by_length
@@ -32,6 +34,8 @@ class Lighter(NamedTuple):
     segments: tuple[int, int]
     #: no point of a reduced curve is farther than this from where it was, as drawn; rounding comes on top
     bound: float
+    #: how often lines cross themselves and each other before and after, as they are written; None of curves
+    crossings: tuple[Crossings, Crossings] | None = None
 
 
 def lighter(
@@ -42,6 +46,8 @@ def lighter(
     corners: bool = True,
     precision: int | None = None,
     shared: bool = False,
+    no_crossings: bool = False,
+    even_if_longer: bool = False,
 ) -> Lighter:
     """Return a drawing whose paths have few segments, each within a distance of its shape.
 
@@ -61,17 +67,24 @@ def lighter(
         Digits after the point, instead of as many as the tolerance needs; what they move counts in the bound.
     shared : bool
         Whether borders that polylines share stay shared.
+    no_crossings : bool
+        Whether polylines cross themselves and each other, as they are written, only where they did: `uncrossed`.
+    even_if_longer : bool
+        Whether lines are replaced where their text gets no shorter.
 
     Raises
     ------
     ParameterError
-        If the tolerance is not positive and finite, or a spline is no plane curve.
+        If the tolerance is not positive and finite, a spline is no plane curve, or crossings are to be avoided in a
+        file that does not hold polylines alone.
     """
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
-    places = document.places
+    places, wanted = document.places, _Wanted(effort, shared, no_crossings, even_if_longer)
+    if no_crossings and not isinstance(document.content, Lines):
+        raise ParameterError(f"no_crossings given for {document.path}; expected a map or a track: GeoJSON or GPX")
     free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
     accuracy = {i: grid or ROUNDED * tolerance / places[i].scale for i in free}
@@ -85,8 +98,7 @@ def lighter(
     for scale in sorted({places[i].scale for i in straight}):
         alike = [i for i in straight if places[i].scale == scale]
         allowed = (1 - room[alike[0]]) * tolerance / scale
-        lines = [document.splines[i] for i in alike]
-        new = _shared(lines, allowed, effort) if shared else [_polyline(line, allowed, effort) for line in lines]
+        new = _together(document, alike, allowed, accuracy, wanted)
         for i, (line, bound) in zip(alike, new, strict=True):
             changed[i], counts[i] = line, _pieces(line)
             worst = max(worst, bound * scale)
@@ -107,19 +119,69 @@ def lighter(
                 counts[i] = len(net)
                 worst = max(worst, float(bent.bound[k]) * scale)
     after = document.with_splines(changed).rounding(accuracy).where_shorter()
-    return Lighter(after, (before, sum(counts.values())), worst)
+    crossings = None
+    if isinstance(document.content, Lines):
+        crossings = count_crossings(document.splines), count_crossings(after.splines)
+    return Lighter(after, (before, sum(counts.values())), worst, crossings)
 
 
-def _polyline(spline: Spline, tolerance: float, effort: str) -> tuple[Spline, float]:
-    """Return a polyline with few corners at the pace of the one given, and how far it is from it."""
-    reduction = reduce(spline, tolerance, distance="geometric", form="polyline", effort=effort)
-    return paced(reduction, spline), float(reduction.bound)
+class _Wanted(NamedTuple):
+    """What is asked of polylines: see `lighter`."""
+
+    effort: str
+    shared: bool
+    no_crossings: bool
+    even_if_longer: bool
 
 
-def _shared(splines: list[Spline], tolerance: float, effort: str) -> list[tuple[Spline, float]]:
-    """Return polylines with few corners that run along each other where those given do."""
-    results, bounds = Arcs(splines).reduced(lambda arc: _polyline(arc, tolerance, effort))
-    return list(zip(results, bounds, strict=True))
+def _together(
+    document: Document, alike: list[int], tolerance: float, accuracy: dict[int, float], wanted: _Wanted
+) -> list[tuple[Spline, float]]:
+    """Return polylines with few corners, as they are written, and how far each is from the one given."""
+    content, lines = document.content, [document.splines[i] for i in alike]
+    reduce = _polylines(wanted.effort, digits_for(accuracy[alike[0]]) if isinstance(content, Lines) else DIGITS)
+    arcs = Arcs(lines) if wanted.shared else None
+    whole: set[int] = set()
+
+    def way(splines: list[Spline], stay: Collection[int]) -> list[tuple[Spline, float]]:
+        return (uncrossed if wanted.no_crossings else apart)(splines, tolerance, reduce, stay)
+
+    while True:
+        new = arcs.reduced(way, whole) if arcs else way(lines, whole)
+        new = [(lines[k], 0.0) if k in whole else each for k, each in enumerate(new)]
+        if wanted.even_if_longer or not isinstance(content, Lines):
+            return new
+        longer = content.longer({i: line for i, (line, _) in zip(alike, new, strict=True)}, accuracy)
+        more = {k for k, i in enumerate(alike) if i in longer} - whole
+        if not more:
+            return new
+        whole |= more  # what is not written anew stays as it is, and so does what others share with it
+
+
+def _polylines(effort: str, digits: int) -> Reduce:
+    """Return what reduces polylines, and remembers them: to few corners, new ones of so many digits."""
+    known: dict[tuple[bytes, bytes, float], tuple[Spline, float]] = {}
+
+    def reduce(spline: Spline, tolerance: float) -> tuple[Spline, float]:
+        key = (spline.coefficients.tobytes(), spline.space.breaks.tobytes(), tolerance)
+        if key not in known:
+            reduction = reduce_one(spline, tolerance, distance="geometric", form="polyline", effort=effort)
+            line, moved = _rounded(paced(reduction, spline), spline, digits)
+            known[key] = line, float(reduction.bound) + moved
+        return known[key]
+
+    return reduce
+
+
+def _rounded(line: Spline, given: Spline, digits: int) -> tuple[Spline, float]:
+    """Return a polyline with so many digits, but for points that were given, and how far a point moved at most."""
+    if digits >= DIGITS:
+        return line, 0.0
+    stay = set(map(tuple, given.coefficients.tolist()))
+    rows = line.coefficients.tolist()
+    points = np.array([p if tuple(p) in stay else [float(number(x, digits)) for x in p] for p in rows])
+    moved = float(np.hypot(*(points - line.coefficients).T).max()) * (1 + 2**-50)
+    return Spline(line.spaces, points), moved
 
 
 def _pieces(spline: Spline) -> int:

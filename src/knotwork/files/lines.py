@@ -75,6 +75,15 @@ class Lines:
                 stop, worst = b, max(worst, bound)
         return b"".join([*parts, self.data[stop:]]), worst
 
+    def longer(self, changed: Mapping[int, Spline], accuracy: Mapping[int, float]) -> set[int]:
+        """Return the numbers of polylines that stay as they were, as their new text would be no shorter."""
+        spans = {i: self.lines[i].span for i in changed}
+        return {
+            i
+            for i, (a, b) in spans.items()
+            if len(self._text(self.lines[i], changed[i], accuracy.get(i, 0.0), f"spline {i}")[0]) >= b - a
+        }
+
     def _text(self, line: Line, spline: Spline, accuracy: float, name: str) -> tuple[bytes, float]:
         points, parameters = corners(spline, name)
         if points.shape[1] != 2:
@@ -82,7 +91,7 @@ class Lines:
         if line.spline.space.periodic != spline.space.periodic:
             raise FileError(f"{name} is open or closed where the one that it replaces is not")
         at = self._at(line, parameters, name)
-        digits = DIGITS if accuracy <= 0 else max(0, int(np.ceil(-np.log10(accuracy * np.sqrt(2)) - 1e-12)))
+        digits = digits_for(accuracy)
         kept: dict[tuple[float, ...], list[int]] = {}
         for k, point in enumerate(line.points.tolist()):
             kept.setdefault(tuple(point), []).append(k)
@@ -124,10 +133,16 @@ def line(
     if len(different) < 2 or (different == different[0]).all():
         return None
     t = increasing(np.hypot.reduce(different[1:] - different[:-1], axis=1), closed)
-    space = SplineSpace(1, t, periodic=True) if closed else SplineSpace(1, np.concatenate([t[:1], t, t[-1:]]))
-    spline = Spline(space, different[1:] if closed else different)
+    spline = polyline(different, t, closed)
     parameters = t[np.cumsum(moves) - 1]
     return Line(span, rows, between, parameters, extras, points, spline, place._replace(closed=closed, straight=True))
+
+
+def polyline(points: Array, t: Array, closed: bool) -> Spline:
+    """Return the polyline that is at points at t; a closed one ends where it begins."""
+    if closed:
+        return Spline(SplineSpace(1, t, periodic=True), points[1:])
+    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)
 
 
 def corners(spline: Spline, name: str) -> tuple[Array, Array]:
@@ -140,6 +155,11 @@ def corners(spline: Spline, name: str) -> tuple[Array, Array]:
     if len(points) != len(breaks):
         raise FileError(f"{name} has a jump; such a file holds polylines without gaps")
     return points, breaks
+
+
+def digits_for(accuracy: float) -> int:
+    """Return how many digits after the point move no point of the plane farther than so much."""
+    return DIGITS if accuracy <= 0 else max(0, int(np.ceil(-np.log10(accuracy * np.sqrt(2)) - 1e-12)))
 
 
 def number(x: float, digits: int) -> str:
@@ -166,7 +186,7 @@ def paced(reduction: Any, before: Spline) -> Spline:
     t = u[0] + increasing(np.diff(u), after.space.periodic)
     if after.space.periodic:
         return Spline(SplineSpace(1, t, periodic=True), np.roll(after.coefficients, -start, axis=0))
-    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), after.coefficients)
+    return polyline(after.coefficients, t, False)
 
 
 def found(lines: Iterable[Line | None], remark: Callable[[str], None]) -> tuple[Line, ...]:
