@@ -18,6 +18,8 @@ from knotwork.cli.terminal import Tolerance, compiling
 
 #: formats that are written in place with few segments, and what these are
 IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
+#: what is said where crossings are not looked at
+NOT_LINES = "--no-crossings is for maps and tracks whose lines stay lines: GeoJSON and GPX in place"
 
 
 @main.command(short_help="Find splines with few knots within a tolerance.")
@@ -90,18 +92,18 @@ def reduce(
 
     def work(file: Path, output: Path | None) -> dict[str, Any] | None:
         kind = job.reading.kind(file)
-        if kind.module == "fonts" and (output is None or output == STREAM or format_of(output) is kind):
+        stays = output is None or output == STREAM or format_of(output) is kind
+        drawn = stays and kind.module in IN_PLACE and form in (None, IN_PLACE[kind.module])
+        drawn = drawn and distance != "parametric" and degree is None and not flip
+        if no_crossings and not (drawn and IN_PLACE[kind.module] == "polyline"):
+            raise click.UsageError(NOT_LINES)
+        if kind.module == "fonts" and stays:
             if distance == "parametric" or form is not None or degree is not None or flip or precision is not None:
                 raise click.UsageError("a font in place takes --tolerance, --keep and --glyphs, of how it is reduced")
             return _font(job, file, output, tolerance, features)
-        drawn = kind.module in IN_PLACE and (output is None or output == STREAM or format_of(output) is kind)
-        if drawn and distance != "parametric" and form in (None, IN_PLACE[kind.module]) and degree is None and not flip:
+        if drawn:
             how = {"effort": effort, "precision": precision, "shared": shared_borders, "no_crossings": no_crossings}
             return _lighter(job, file, output, tolerance, even_if_longer, **how)
-        if no_crossings:
-            raise click.UsageError(
-                "--no-crossings is for maps and tracks whose lines stay lines: GeoJSON and GPX in place"
-            )
         shapes = distance is None and degree is None and kind.shapes
         made = form or ("polyline" if shapes and kind.module != "svg" else "spline")
         between = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
@@ -123,6 +125,8 @@ def reduce(
         return job.one(file, output, change, tolerance, "reducing", even_if_longer=even_if_longer)
 
     if together:
+        if no_crossings:
+            raise click.UsageError(NOT_LINES)
         _masters(job, tolerance, features)
         return
     job.each(work)
