@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from scipy.interpolate import BSpline
 
 import knotwork as kw
+from knotwork.bulk.curves import TASKS
 from knotwork.cli import main, report, terminal
 from knotwork.files import read, write
 
@@ -79,6 +80,10 @@ def test_every_command_has_help_with_an_example(run):
     for name in main.commands:
         text = run(name, "--help").stdout
         assert f"knotwork {name} " in text.split("Example", 1)[1], name
+
+
+def test_batch_offers_what_the_library_does():
+    assert set(main.commands["batch"].params[0].type.choices) == set(TASKS)
 
 
 def test_the_face_of_the_command(run):

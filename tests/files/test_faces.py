@@ -13,7 +13,8 @@ import knotwork as kw
 from knotwork.errors import FileError, ParameterError
 from knotwork.files import SUFFIXES, Written, read, write
 
-WRITTEN = [suffix for suffix, each in SUFFIXES.items() if each.writes]
+#: what curves are written as: not meshes, and not fonts, which are written in place alone
+WRITTEN = [suffix for suffix, each in SUFFIXES.items() if each.writes and each.reads and each.module != "fonts"]
 
 CURVE = kw.curve([[0, 0], [1, 2], [3, 1]], degree=1)
 GARBAGE = bytes(range(256)) * 40

@@ -5,24 +5,26 @@ from __future__ import annotations
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 import knotwork as kw
-from knotwork.bulk.curves import TASKS
-from knotwork.bulk.face import Pace
-from knotwork.bulk.parts import BOOKS
 from knotwork.cli import report, terminal
 from knotwork.cli.program import FILE, as_json, main, print_json
 from knotwork.cli.terminal import Tolerance
 
+if TYPE_CHECKING:
+    from knotwork.bulk.face import Pace
+
+#: what is done to the curves, by the names that `kw.batch` knows
+TASKS = ("reduce", "fit", "convert", "flatten")
 #: seconds between lines of progress, where there is no terminal
 SELDOM = 30.0
 
 
 @main.command(short_help="Reduce, fit, convert or flatten many curves and files, in parts.")
-@click.argument("task", type=click.Choice(list(TASKS)))
+@click.argument("task", type=click.Choice(TASKS))
 @click.argument("input")
 @click.argument("output", type=FILE)
 @click.option(
@@ -76,6 +78,8 @@ def batch(
     if as_json:
         print_json(dict(done._asdict(), output=str(output), bound=report.upward(done.bound)))
         return
+    from knotwork.bulk.parts import BOOKS
+
     again = f", {done.before} of {done.parts} parts were there" if done.before else ""
     click.echo(
         f"{done.given:,} curves = {done.made:,} written + {done.failed:,} failed, in {done.seconds:.1f} s{again}"

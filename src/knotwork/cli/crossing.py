@@ -17,7 +17,7 @@ from knotwork.cli.streams import Reading, reading
 from knotwork.cli.terminal import Failure, Tolerance
 from knotwork.errors import KnotworkError
 
-Splines = Sequence[kw.Spline]
+Splines = Sequence["kw.Spline"]
 
 
 @main.command(short_help="Where curves cross, touch, or run along each other.")

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.errors import FileError, MissingExtraError
+from knotwork.errors import FileError, KnotworkError, MissingExtraError
 from knotwork.files.cad.shapes import Remarks, Shape, in_space, plain
 from knotwork.files.places import Place
 from knotwork.insertion import clamp
@@ -45,7 +45,7 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
     found: list[Spline] = []
     for i, each in enumerate(model.Objects):
         where = f"object {i}" + (f" {each.Attributes.Name!r}" if each.Attributes.Name else "")
-        shapes = remarks.attempt(where, lambda e=each, w=where: list(_shapes(e.Geometry, w, remarks)))  # type: ignore[misc]
+        shapes = remarks.attempt(where, lambda e=each, w=where: _sound(e.Geometry, w, remarks))  # type: ignore[misc]
         found += [shape.spline for shape in shapes]
     remarks.close()
     return found
@@ -57,6 +57,16 @@ def _rhino() -> Any:
     except ImportError as exc:
         raise MissingExtraError("3DM files need rhino3dm: pip install rhino3dm") from exc
     return rhino3dm
+
+
+def _sound(geometry: Any, where: str, remarks: Remarks) -> list[Shape]:
+    """Return the shapes of an object; rhino3dm tells damage by errors of many kinds."""
+    try:
+        return list(_shapes(geometry, where, remarks))
+    except KnotworkError:
+        raise
+    except (ValueError, TypeError, IndexError, RuntimeError, AttributeError) as exc:
+        raise FileError(f"rhino3dm cannot tell what it is: {exc}") from exc
 
 
 def _shapes(geometry: Any, where: str, remarks: Remarks) -> Iterator[Shape]:
