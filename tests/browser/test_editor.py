@@ -284,6 +284,7 @@ def test_two_tabs_show_the_same(sheet, served):
     other.page.close()
 
 
+@pytest.mark.slow
 def test_a_curve_drawn_by_hand_has_few_points_and_can_be_read_as_a_line(sheet):
     turn = np.linspace(0, np.pi, 120)
     with sheet.change(seconds=400):  # what fits it may have to be compiled first

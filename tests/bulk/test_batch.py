@@ -74,6 +74,7 @@ def until(happens: Any) -> None:
         time.sleep(0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc")
 def test_killed_and_begun_again_is_as_if_undisturbed(tmp_path: Path) -> None:
     given = table(tmp_path / "tracks.parquet", tracks(120))
@@ -166,6 +167,7 @@ def test_a_full_disk_stops_the_job_and_nothing_is_lost(tmp_path: Path) -> None:
     assert pq.read_table(tmp_path / "out", columns=["name"]).num_rows == 20
 
 
+@pytest.mark.slow
 def test_folders_keep_their_files_and_a_poisoned_one_fails_alone(tmp_path: Path) -> None:
     inside = tmp_path / "in" / "deep"
     inside.mkdir(parents=True)
@@ -229,6 +231,7 @@ def test_wkb_and_splines_as_columns(tmp_path: Path) -> None:
     assert set(pq.read_table(next((tmp_path / "flat").glob("*.parquet")))["degree"].to_pylist()) == {1}
 
 
+@pytest.mark.slow
 def test_many_are_as_each_alone() -> None:
     rng = np.random.default_rng(3)
     curves = [kw.curve(np.cumsum(rng.normal(size=(9, 2)) * 10.0**k, axis=0)) for k in range(-3, 4)]

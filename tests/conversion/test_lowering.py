@@ -124,6 +124,7 @@ def test_no_times_is_no_change():
     assert kw.lower(c, 0) == (c, 0, True, "lowering")
 
 
+@pytest.mark.slow
 def test_long_curves():
     """Steps end at errors that are equal but for rounding; none of them divides by their difference."""
     for curve in (kw.curve(np.cos(np.linspace(0, 1, 700)), 5), kw.curve(np.cos(np.linspace(0, 50, 10000)))):
