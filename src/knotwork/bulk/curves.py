@@ -105,7 +105,7 @@ def fit_curves(
     """
 
     def one(spline: Spline) -> Outcome:
-        points, closed = _corners(spline), spline.space.periodic
+        points, closed = corners(spline), spline.space.periodic
         at = spline.space.breaks if distance == "parametric" else None
         found = fit(
             points, tolerance, parameters=at, degree=degree, distance=distance, form=form, effort=effort, closed=closed
@@ -171,7 +171,7 @@ def _straight(spline: Spline) -> bool:
     return spline.parameters == 1 and spline.degree == (1,) and not spline.rational
 
 
-def _corners(spline: Spline) -> Any:
+def corners(spline: Spline) -> Any:
     """Return the corners of a polyline, the first again at the end of a closed one."""
     if not _straight(spline):
         raise PointError(f"{str(spline)[1:-1]} given; expected points, as a polyline: a curve of degree 1")

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import click
-import numpy as np
 
 import knotwork as kw
 from knotwork.cli import terminal
 from knotwork.cli.jobs import Job, job, writing_job
 from knotwork.cli.program import main
 from knotwork.cli.terminal import Tolerance
-from knotwork.errors import PointError
 
 
 @main.command(short_help="Find smooth curves within a tolerance of points.")
@@ -32,10 +30,12 @@ def fit(job: Job, tolerance: Tolerance, degree: int, distance: str | None, form:
       knotwork fit track.csv --columns x,y -t 0.5 -o smooth.json
     """
 
+    from knotwork.bulk.curves import corners
+
     def change(spline: kw.Spline, allowed: float) -> tuple[Any, ...]:
         parameters = spline.space.breaks if distance == "parametric" else None
         found = kw.fit(
-            _points(spline), allowed, parameters=parameters, degree=degree, distance=distance, form=form,
+            corners(spline), allowed, parameters=parameters, degree=degree, distance=distance, form=form,
             effort=effort, closed=spline.space.periodic,
         )  # fmt: skip
         return found.spline, found.bound
@@ -60,17 +60,11 @@ def interpolate(job: Job, degree: int, parameters: str) -> None:
       knotwork interpolate points.csv -o through.json
     """
 
+    from knotwork.bulk.curves import corners
+
     def change(spline: kw.Spline) -> tuple[Any, ...]:
-        points = _points(spline)
+        points = corners(spline)
         closed = spline.space.periodic
         return kw.interpolate(points[:-1] if closed else points, parameters, degree, periodic=closed), 0.0
 
     job.run(change)
-
-
-def _points(spline: kw.Spline) -> np.ndarray[Any, Any]:
-    """Return the corners of a polyline, the first again at the end of a closed one."""
-    if spline.parameters != 1 or spline.space.degree != 1 or spline.rational:
-        raise PointError(f"{str(spline)[1:-1]} given; expected points, as a polyline: a curve of degree 1")
-    points: np.ndarray[Any, Any] = np.asarray(spline.coefficients)
-    return np.concatenate([points[-1:], points]) if spline.space.periodic else points

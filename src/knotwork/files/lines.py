@@ -127,7 +127,7 @@ def line(
     span: tuple[int, int], rows: list[bytes], between: bytes, points: Array, extras: Array, place: Place, closed: bool
 ) -> Line | None:
     """Return a polyline over its lengths; None if it has no two different points."""
-    moves = np.append(True, (points[1:] != points[:-1]).any(axis=1))
+    moves = np.append(True, (points[1:] != points[:-1]).any(axis=1))[: len(points)]
     different = points[moves]
     closed = closed and len(different) > 3 and bool((different[0] == different[-1]).all())
     if len(different) < 2 or (different == different[0]).all():

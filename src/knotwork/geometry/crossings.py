@@ -14,7 +14,8 @@ from knotwork.geometry.exact_crossings import decided
 from knotwork.geometry.gathering import Crossings, closed, gathered
 from knotwork.geometry.lines import Line, Plane, on_plane, segment
 from knotwork.geometry.meetings import APART, NEXT, SAME, TOGETHER, Meetings, Pairs, Stretch, search
-from knotwork.geometry.sides import Side, Whole, candidates, scale, whole
+from knotwork.geometry.neighbours import candidates
+from knotwork.geometry.sides import Side, Whole, scale, whole
 from knotwork.spline import Spline
 
 

@@ -8,11 +8,12 @@ from fractions import Fraction
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.geometry.neighbours import candidates, in_order
 
 #: how far a float area may be off, in parts of its two products (Shewchuk 1997, §4), and what underflow may add
 ROUNDING, SMALLEST = 4 * 2.0**-53, 1e-290
-#: cells on each side of the grid along which edges are sorted
-CELLS = 1 << 16
+#: bits of the cells of each axis along which edges are sorted
+BITS = 16
 #: pairs whose signs are found at once: what bounds the memory
 CHUNK = 1 << 18
 
@@ -63,32 +64,10 @@ def edge_crossings(lines: Sequence[Array]) -> Array:
 
 def _near(E: Array) -> tuple[Array, Array]:
     """Return the pairs of edges whose boxes have a point in common."""
-    order = _along(E)
-    low, high = E.min(axis=1)[order], E.max(axis=1)[order]
-    boxes = [(low, high)]
-    while len(boxes[-1][0]) > 1:
-        low, high = boxes[-1]
-        first = np.arange(0, len(low), 2)
-        boxes.append((np.minimum.reduceat(low, first), np.maximum.reduceat(high, first)))
-    pairs = np.zeros((2, 1), np.int64)
-    for low, high in boxes[-2::-1]:
-        two = pairs[:, pairs[0] != pairs[1]]
-        pairs = np.concatenate([2 * pairs, 2 * pairs + [[0], [1]], 2 * pairs + 1, 2 * two + [[1], [0]]], axis=1)
-        i, j = pairs = pairs[:, (pairs < len(low)).all(axis=0)]
-        pairs = pairs[:, ((low[i] <= high[j]) & (low[j] <= high[i])).all(axis=1)]
-    i, j = order[pairs[:, pairs[0] != pairs[1]]]
-    return i, j
-
-
-def _along(E: Array) -> Array:
-    """Return edges in the order of the bits of the coordinates of their middles, in turn (Morton)."""
-    middle = E[:, 0] / 2 + E[:, 1] / 2
-    low, high = middle.min(axis=0), middle.max(axis=0)
-    cell = ((middle / 2 - low / 2) / (float((high / 2 - low / 2).max()) or 1.0) * (CELLS - 1)).astype(np.int64)
-    code = np.zeros(len(E), np.int64)
-    for bit in range(CELLS.bit_length() - 1):
-        code |= ((cell[:, 0] >> bit) & 1) << (2 * bit) | ((cell[:, 1] >> bit) & 1) << (2 * bit + 1)
-    return np.argsort(code, kind="stable")
+    order = in_order(E[:, 0] / 2 + E[:, 1] / 2, BITS)
+    i, j = candidates(E.min(axis=1)[order], E.max(axis=1)[order], None)
+    two = i != j
+    return order[i[two]], order[j[two]]
 
 
 def _cross(E: Array, F: Array) -> Array:

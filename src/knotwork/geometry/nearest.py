@@ -17,6 +17,7 @@ from knotwork.arithmetic.kernel import Kernel, extent, kernel
 from knotwork.arithmetic.parallel import in_parts
 from knotwork.errors import PointError
 from knotwork.geometry.bezier import halves, product
+from knotwork.geometry.neighbours import in_order
 from knotwork.geometry.pieces import unrolling
 from knotwork.insertion.pieces import to_bezier
 from knotwork.spline import Spline
@@ -336,7 +337,7 @@ def prepared(spline: Spline, points: Any) -> tuple[Array, Array, int, Array, Any
 
 def searched(points: Array, tree: Net, search: Kernel, room: Callable[[], Any], parameters: int) -> tuple[Array, Array]:
     """Return for each point the part and the places in it that are nearest, and the distance."""
-    order = _neighbours(points)
+    order = in_order(points)
     sorted_points = np.ascontiguousarray(points[order])
     found, far = np.zeros((len(points), parameters + 1)), np.zeros(len(points))
 
@@ -348,20 +349,6 @@ def searched(points: Array, tree: Net, search: Kernel, room: Callable[[], Any], 
     where, distances = np.empty_like(found), np.empty_like(far)
     where[order], distances[order] = found, far
     return where, distances
-
-
-def _neighbours(points: Array) -> Array:
-    """Return an order in which points that follow each other are near each other: along Morton's curve."""
-    d = points.shape[1]
-    bits = max(1, min(10, 60 // d))
-    low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
-    cells = ((points - low) / np.where(high > low, high - low, 1) * (2**bits - 1)).astype(np.int64)
-    key = np.zeros(len(points), np.int64)
-    for bit in reversed(range(bits)):
-        for c in range(min(d, 60 // bits)):
-            key = 2 * key + ((cells[:, c] >> bit) & 1)
-    order: Array = np.argsort(key, kind="stable")
-    return order
 
 
 def box_tree(nets: Array, weights: tuple[Array, Array], allowed: float) -> Net:

@@ -25,9 +25,9 @@ from knotwork.conversion.certificate import Certificate, Lifted, lifted, warn_of
 from knotwork.insertion.face import insertion_matrix
 from knotwork.linear.banded import as_blocks
 from knotwork.removal.knot_lines import Axis, Measure, cost, increase, take_line, take_out_line
+from knotwork.removal.problem import end_points
 from knotwork.removal.result import Progress, Reduction, part_of
 from knotwork.removal.tolerance import Tolerance
-from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 from knotwork.unrolled import goes_around
 
@@ -305,13 +305,3 @@ def _blocks(net: Array, axis: int) -> Array:
     """View a net as (A, N, B, width) with the axis in question second."""
     blocks = as_blocks(net, axis)
     return blocks.reshape(*blocks.shape[:2], -1, net.shape[-1])
-
-
-def end_points(space: SplineSpace) -> Array:
-    """Return which control points are end points: those at clamped ends."""
-    if space.periodic:
-        return np.zeros(0, int)
-    n, (a, b) = space.degree, space.domain
-    start = int(np.searchsorted(space.knots, a, "right")) - 1 - n
-    end = int(np.searchsorted(space.knots, b, "left")) - 1
-    return np.array([start, end])[[space.multiplicity(a) > n, space.multiplicity(b) > n]]

@@ -177,8 +177,6 @@ def _path(points: Array, bulges: Array, closed: bool) -> Spline:
     """Return lines and arcs, one after the other: of degree 1 if there are no arcs, else rational of degree 2."""
     if closed and len(points):
         points, bulges = np.concatenate([points, points[:1]]), np.append(bulges, 0.0)
-    if not len(points):
-        raise FileError("it has no points")
     if not bulges[:-1].any():
         made = polyline((0, 0), [], b"", points, np.zeros((len(points), 0)), Place(), closed)
         if made is None:
