@@ -85,6 +85,27 @@ def offsets():
     save(figure, "offset.png", dpi=110)
 
 
+def trimmed():
+    """Draw what is left of curves beside others when all that is too near has gone."""
+    figure, axes = plt.subplots(1, 3, figsize=(9, 2.8), layout="constrained")
+    outline = kw.curve(
+        [[0, 0], [1.5, 0.9], [3, 0.2], [4.2, 1], [3.4, 2.4], [2.2, 1.6], [1.2, 2.6], [-0.4, 2]], periodic=True
+    )
+    eight = kw.curve([[0, 0], [2, 2], [4, 2], [4, 0], [2, 2.5], [0, 2.5]], periodic=True)
+    cusp = kw.curve([[0, 0], [1, 1], [0, 1], [1, 0]])
+    sides = ([0.1 * k for k in range(1, 9)], [-0.2, 0.2], [-0.12, 0.12])
+    for each, c, distances in zip(axes, (outline, eight, cusp), sides, strict=True):
+        for d in distances:
+            found = kw.offset(c, d, 1e-3, self_crossings="remove")
+            for part in found.splines:
+                each.plot(*part.with_domain(0, 1)(np.linspace(0, 1, 800)).T, color=INK, lw=0.9)
+            if len(distances) == 2:
+                each.plot(*found.spline.with_domain(0, 1)(np.linspace(0, 1, 1600)).T, color=KNOT, lw=0.4)
+        each.plot(*c(np.linspace(*c.space.domain, 400)).T, color=NET, lw=3, zorder=0)
+        each.set_aspect("equal")
+    save(figure, "trimmed.png", dpi=110)
+
+
 def main():
     """Draw zeros of a function, and what is found on a curve."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
@@ -109,5 +130,6 @@ def main():
 if __name__ == "__main__":
     main()
     offsets()
+    trimmed()
     crossings()
     mesh()

@@ -44,8 +44,8 @@ def beside(curve, u, d):
     return [p[0] - d * v[1] / size, p[1] + d * v[0] / size]
 
 
-def farthest(curve, d, found, per=5):
-    """Return the largest distance from c + d n found at some parameters within each part."""
+def farthest(curve, d, found, per=5, but=math.inf):
+    """Return the largest distance from c + d n found at some parameters within each part, but the part that has one."""
     nets, breaks = kw.to_bezier(found.spline)
     at = found.parameters
     assert len(at) == len(breaks)
@@ -53,7 +53,7 @@ def farthest(curve, d, found, per=5):
     with mpmath.workdps(40):
         for net, a, b in zip(nets, at, at[1:], strict=False):
             net = [[mpmath.mpf(float(x)) for x in p] for p in net]
-            for k in range(1, per + 1) if b > a else ():
+            for k in range(1, per + 1) if b > a and not a <= but <= b else ():
                 t = mpmath.mpf(k) / (per + 1)
                 there = beside(curve, mpmath.mpf(float(a)) + t * (mpmath.mpf(float(b)) - mpmath.mpf(float(a))), d)
                 here = bezier(net, t)
@@ -201,8 +201,10 @@ def test_what_is_refused():
         kw.offset(kw.curve([[1, 1]] * 4), 1, 1e-3)
     with pytest.raises(ParameterError, match="rounding alone is"):
         kw.offset(ARCH, 1, 1e-17)
-    with pytest.raises(ParameterError, match="stands still"):
-        kw.offset(kw.curve([[0, 0], [1, 1], [0, 1], [1, 0]]), 0.3, 1e-6)  # a cusp in the middle
+    with pytest.raises(ParameterError, match="self_crossings; expected 'keep' or 'remove'; did you mean 'remove'"):
+        kw.offset(ARCH, 1, 1e-3, self_crossings="removed")
+    with pytest.raises(ParameterError, match="'mitre' given; expected 'round'"):
+        kw.offset(SQUARE, 1, 1e-3, joins="mitre", self_crossings="remove")
     with pytest.raises(SizeError, match="more than 65536 pieces"):
         kw.offset(kw.curve(ARCH.points * 1e200), 1, 1e-3)
 
@@ -212,3 +214,126 @@ def test_a_cusp_where_the_curve_was_split():
     for half in halves:
         found = kw.offset(half, 0.3, 1e-6)
         assert farthest(half, 0.3, found) <= found.bound
+
+
+# ---- cusps inside a piece -------------------------------------------------------------------------------------------
+
+
+def cusp(at, turn=0.0):
+    """Return ((t − at)², (t − at)³) over [0, 1], turned."""
+    powers = np.array([[at * at, -2 * at, 1, 0], [-(at**3), 3 * at * at, -3 * at, 1]])
+    bernstein = np.array([[math.comb(i, k) / math.comb(3, k) for k in range(4)] for i in range(4)])
+    around = [[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]
+    return kw.curve(bernstein @ powers.T, 3).transform(around)
+
+
+@pytest.mark.parametrize("d", [0.3, -0.3])
+@pytest.mark.parametrize(
+    ("curve", "at", "ahead"),
+    [
+        (kw.curve([[0, 0], [1, 1], [0, 1], [1, 0]]), 0.5, [0, 1]),
+        *((cusp(at, turn), at, [-math.cos(turn), -math.sin(turn)]) for at, turn in ((0.5, 0), (0.25, 0), (0.3, 1.1))),
+    ],
+)
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-7])
+def test_a_cusp_inside_a_piece_is_gone_round(curve, at, ahead, d, tolerance):
+    found = kw.offset(curve, d, tolerance)
+    assert found.bound <= tolerance
+    assert farthest(curve, d, found, 2, but=at) <= found.bound
+    points = found.spline(np.linspace(*found.spline.space.domain, 999))
+    assert kw.closest(curve, points).distances.max() <= 0.3 + found.bound
+    assert ((points - curve(at)) @ ahead).max() == pytest.approx(0.3, abs=1e-3)
+
+
+@pytest.mark.parametrize("d", [0.3, -0.3])
+def test_where_a_curve_only_pauses_it_goes_straight_on(d):
+    paused = kw.curve([[-1, -1], [1, 1], [-1, -1], [1, 1]])  # (2t − 1)³ on the diagonal
+    found = kw.offset(paused, d, 1e-6)
+    points = found.spline(np.linspace(*found.spline.space.domain, 99))
+    assert points @ [-(0.5**0.5), 0.5**0.5] == pytest.approx(np.full(99, d), abs=found.bound)
+
+
+def test_a_cusp_far_from_the_origin_needs_a_larger_tolerance():
+    far = cusp(0.3).transform(1, [1e5, 1e5])
+    assert kw.offset(far, 0.3, 1e-5).bound <= 1e-5
+    with pytest.raises(ParameterError, match="expected a larger tolerance"):
+        kw.offset(far, 0.3, 1e-10)
+
+
+# ---- without what is too near ---------------------------------------------------------------------------------------
+
+
+def closed(points, degree=3):
+    return kw.curve(points, degree, periodic=True)
+
+
+ANGLES = np.arange(16) * math.pi / 8
+STAR = closed(np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1) * np.array([[3], [1]] * 8).reshape(16, 1))
+COMB = closed([[0, 0], [6, 0], [6, 3], [5, 3], [5, 1], [4, 1], [4, 3], [3, 3], [3, 0.5], [2, 0.5], [2, 3], [0, 3]], 1)
+BONE = closed([[0, 0], [1.5, 0.6], [3, 0], [4, 1], [3, 2], [1.5, 1.4], [0, 2], [-1, 1]])
+EIGHT = closed([[0, 0], [2, 2], [4, 2], [4, 0], [2, 2.5], [0, 2.5]])
+HAIRPIN = kw.curve([[0, 0], [4, 0], [4.5, 0.3], [4, 0.6], [0, 0.6]])
+
+
+def nowhere_nearer(curve, d, found, tolerance):
+    for left in found.splines:
+        points = left(np.linspace(*left.space.domain, 999))
+        assert kw.closest(curve, points).distances.min() >= abs(d) - tolerance
+        assert not len(kw.intersect(left).a)
+
+
+@pytest.mark.parametrize(
+    ("curve", "d"),
+    [
+        *((STAR, d) for d in (0.2, 0.6, -0.4, -1.5)),
+        *((COMB, d) for d in (0.2, 0.35, 0.6, -0.3, -0.7)),
+        *((BONE, d) for d in (0.3, 0.55, 0.65, -0.5)),
+        *((SQUARE, d) for d in (0.5, 0.99, -3)),
+        *((CIRCLE.transform([[3, 0], [0, 1]]), d) for d in (0.3, 0.7, -0.5)),
+    ],
+)
+def test_loops_go_round_what_shapely_leaves(curve, d):
+    shapely = pytest.importorskip("shapely")
+    found = kw.offset(curve, d, 1e-4, self_crossings="remove")
+    nowhere_nearer(curve, d, found, 1e-4)
+    shape = shapely.Polygon(kw.flatten(curve, 1e-6).points).buffer(-d, quad_segs=256)
+    rings = [g for part in getattr(shape, "geoms", [shape]) for g in (part.exterior, *part.interiors)]
+    assert len(found.splines) == len(rings)
+    assert all(left.space.periodic for left in found.splines)
+    assert sum(float(kw.area(left).value) for left in found.splines) == pytest.approx(shape.area, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("curve", "d"), [(SQUARE, 1.5), (SQUARE, 3), (CIRCLE, 1.5), (COMB, 1.1), (HAIRPIN, 0.4), (STAR, 4)]
+)
+def test_nothing_is_left_where_all_is_too_near(curve, d):
+    assert kw.offset(curve, d, 1e-3, self_crossings="remove").splines == ()
+
+
+@pytest.mark.parametrize(
+    ("curve", "d", "count"),
+    [
+        (EIGHT, 0.2, 2),
+        (EIGHT, -0.2, 2),
+        (HAIRPIN, -0.4, 1),
+        (HAIRPIN, 0.1, 1),
+        (cusp(0.5), 0.1, 1),
+        (cusp(0.5), -0.1, 2),
+    ],
+)
+def test_curves_that_are_open_or_cross_themselves(curve, d, count):
+    found = kw.offset(curve, d, 1e-4, self_crossings="remove")
+    nowhere_nearer(curve, d, found, 1e-4)
+    assert len(found.splines) == count
+    raw = found.spline(np.linspace(*found.spline.space.domain, 999))
+    far = raw[kw.closest(curve, raw).distances >= abs(d) - found.bound]
+    assert len(far) > 99
+    assert np.min([kw.closest(left, far).distances for left in found.splines], axis=0).max() < 0.02
+
+
+def test_what_crosses_nowhere_is_left_as_it_is():
+    for how in ("keep", "remove"):
+        found = kw.offset(ARCH, -0.5, 1e-4, self_crossings=how)
+        assert len(found.splines) == 1
+        assert found.splines[0] is found.spline
+    assert kw.offset(ARCH, 0, 1e-4, self_crossings="remove").splines[0].space.domain == (0, 1)

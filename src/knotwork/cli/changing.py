@@ -16,7 +16,7 @@ from knotwork.cli.terminal import Tolerance
 
 if TYPE_CHECKING:
     from knotwork.conversion.face import How
-    from knotwork.geometry.offsetting import Joins
+    from knotwork.geometry.joins import Joins
 
 
 @main.command(short_help="Insert knots: more control points, the same shape.")

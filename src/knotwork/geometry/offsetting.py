@@ -3,34 +3,36 @@
 Each piece c of the curve gets a cubic q with the ends and end derivatives of c + d n, where n is the unit normal to the
 left. With e = q − c and the unit tangent τ, |q − c − d n|² = (e·τ)² + (e·n − d)², and |(e·n)² − d²| is at most
 ||e|² − d²| + (e·τ)². So e·τ and |e|² − d² bound the error, where det(τ, e) has the sign of d. All three are polynomials
-over positive ones, bounded by their Bernstein coefficients. Pieces are halved until that is within the tolerance.
+over positive ones, bounded by their Bernstein coefficients. Pieces are halved until that is within the tolerance, or
+until they are so short that they may be taken for one point, as at a cusp, where no normal is known.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array, real_numbers
 from knotwork.errors import ParameterError, PointError, SizeError, nearest_name
+from knotwork.geometry.analytic import ellipse
 from knotwork.geometry.bezier import joined
+from knotwork.geometry.crossings import intersect
+from knotwork.geometry.joins import Corner, Joins, joined_at, left_of
 from knotwork.geometry.pieces import UNIT, Pieces, coordinates, halved
+from knotwork.geometry.trimming import trimmed
 from knotwork.geometry.turning import require_curve
 from knotwork.insertion.pieces import from_bezier
 from knotwork.knots import multiplicities
 from knotwork.spline import Spline
 
-Joins = Literal["round", "mitre", "bevel"]
+SelfCrossings = Literal["keep", "remove"]
 #: pieces at most
 PIECES = 1 << 16
-#: how much farther than the distance the point of a mitre may be: beyond, it is cut off
-MITRE = 4.0
-#: a turn this near to half a turn goes back the way it came
-ROUNDING = 2.0**-40
+#: a part that is no longer than this, beside the tolerance, may be a point where no normal is known
+STILL = 1 / 8
 #: an error that only underflow can make
 NOTHING = 2.0**-1000
 
@@ -52,9 +54,18 @@ class Offset(NamedTuple):
     bound: float
     #: of the curve, one for each break of the spline, and linear between; a join has one parameter, or those of a pause
     parameters: Array
+    #: the spline, or if self-crossings are to be removed, what is left of it: none, one or several
+    splines: tuple[Spline, ...]
 
 
-def offset(curve: Spline, distance: float, tolerance: float, *, joins: Joins = "round") -> Offset:
+def offset(
+    curve: Spline,
+    distance: float,
+    tolerance: float,
+    *,
+    joins: Joins = "round",
+    self_crossings: SelfCrossings = "keep",
+) -> Offset:
     """Return a spline at a distance to the left of a plane curve, within a proven bound.
 
     Parameters
@@ -70,29 +81,41 @@ def offset(curve: Spline, distance: float, tolerance: float, *, joins: Joins = "
         What goes round a corner on its outer side: an arc, two lines to the point where those of both sides meet (one
         line, where that point is more than 4 times the distance away), or one line. On the inner side it is always one
         line.
+    self_crossings : {"keep", "remove"}
+        Whether to remove, from ``splines``, all that is nearer to the curve than the distance: loops inside corners and
+        where the curve bends more than the distance allows, and what comes near another part of the curve. Joins must
+        be round.
 
     Returns
     -------
     Offset
         The ``spline``, closed where the curve is; ``parameters``; and ``bound``, at most the tolerance: the largest
         distance of the spline from c(u) + distance · n(u) at the same u, rounding included. Of round joins it is the
-        distance from the arc.
+        distance from the arc. ``splines`` is the spline alone, or what is left of it: none, one or several; no point of
+        them is nearer to the curve than the distance less the tolerance. They are closed if the curve is closed and
+        crosses itself nowhere.
 
     Raises
     ------
     PointError
         If the curve is not real and in the plane.
     ParameterError
-        If the tolerance is not above 0, or so small that rounding is larger; if the curve is one point, or stands still
-        inside a piece, so that it has no normal there.
+        If the tolerance is not above 0, or so small that rounding is larger, as beside a cusp far from the origin; if
+        the curve is one point.
     SizeError
         If more than some ten thousand pieces would be needed.
 
     Notes
     -----
-    Nothing is cut away: where the distance is more than the radius of curvature, and on the inner side of corners, the
-    result crosses itself; `intersect` finds where. A turn is no corner where the ends beside it are within a quarter of
-    the tolerance.
+    Where the distance is more than the radius of curvature, and on the inner side of corners, ``spline`` crosses
+    itself. A turn is no corner where the ends beside it are within a quarter of the tolerance. A cusp inside a piece,
+    where the curve stands still, or so nearly that rounding hides its normal, is a corner whose tip is gone round on
+    either side.
+
+    What is removed begins and ends where ``spline`` crosses itself and, unless the curve is closed and crosses itself
+    nowhere, where it crosses the offset of the other side, or circles about the ends. Between these places all or
+    nothing goes. That what stays is far enough is proven by empty discs that overlap. A loop less deep than ``bound``
+    may stay. A slot just as wide as twice the distance leaves a line there and back.
 
     Examples
     --------
@@ -104,6 +127,10 @@ def offset(curve: Spline, distance: float, tolerance: float, *, joins: Joins = "
     >>> square = kw.curve([[0, 0], [1, 0], [1, 1], [0, 1]], degree=1, periodic=True)
     >>> round(float(kw.area(kw.offset(square, -1, 1e-9, joins="mitre").spline).value), 9)
     9.0
+    >>> [round(float(kw.area(x).value), 9) for x in kw.offset(square, 0.25, 1e-6, self_crossings="remove").splines]
+    [0.25]
+    >>> kw.offset(square, 0.75, 1e-6, self_crossings="remove").splines
+    ()
     """
     require_curve(curve)
     if curve.dim != 2:
@@ -115,19 +142,36 @@ def offset(curve: Spline, distance: float, tolerance: float, *, joins: Joins = "
         raise ParameterError(f"distance {distance!r} given; expected a number")
     if allowed.shape != () or not allowed > 0:
         raise ParameterError(f"tolerance {tolerance!r} given; expected a number above 0")
-    if joins not in get_args(Joins):
-        expected = f"{joins!r} given for joins; expected 'round', 'mitre' or 'bevel'"
-        raise ParameterError(expected + nearest_name(joins, get_args(Joins)))
-    return _offset(curve, float(d), float(allowed), joins)
+    for given, name, known in ((joins, "joins", Joins), (self_crossings, "self_crossings", SelfCrossings)):
+        names = get_args(known)
+        if given not in names:
+            expected = " or ".join(map(repr, names)) if len(names) == 2 else "'round', 'mitre' or 'bevel'"
+            raise ParameterError(f"{given!r} given for {name}; expected {expected}" + nearest_name(given, names))
+    if self_crossings == "keep" or not d:
+        return _offset(curve, float(d), float(allowed), joins)
+    if joins != "round":
+        raise ParameterError(f"joins {joins!r} given; expected 'round', as others leave the distance at corners")
+    return _without_crossings(curve, float(d), float(allowed))
+
+
+def _without_crossings(curve: Spline, d: float, tolerance: float) -> Offset:
+    found = _offset(curve, d, tolerance / 4, "round")
+    ends = np.array([curve(x) for x in curve.space.domain], float)
+    closed = found.spline.space.periodic or bool((ends[0] == ends[1]).all())
+    walls = []
+    met = intersect(curve)
+    if not closed or len(met.a) or len(met.stretches):
+        walls.append(_offset(curve, -d, tolerance / 4, "round").spline)
+        walls += [] if closed else [ellipse(p, [abs(d), 0], [0, abs(d)]) for p in ends]
+    left = trimmed(found.spline, walls, curve, abs(d), found.bound, tolerance)
+    return found._replace(splines=tuple(left))
 
 
 def _offset(curve: Spline, d: float, tolerance: float, joins: Joins) -> Offset:
     H, start, end = _moving(curve)
     D = _directions(H)
     first, last = (_point(H, k) for k in (0, -1))
-    tangent = [_unit(D, k) for k in (0, -1)]
-    before = last + d * _left(tangent[1])
-    after = first + d * _left(tangent[0])
+    before, after = last + d * left_of(_unit(D, -1)), first + d * left_of(_unit(D, 0))
     rounding = 8 * UNIT * float(abs(first).max() + abs(d))
     following = np.roll(np.arange(len(first)), -1)
     gap = np.hypot(*(first[following] - last).T)
@@ -143,55 +187,93 @@ def _offset(curve: Spline, d: float, tolerance: float, joins: Joins) -> Offset:
     def enough(parts: list[Pieces]) -> Array:
         if len(parts[0].c) > PIECES:
             raise SizeError(f"tolerance {tolerance} takes more than {PIECES} pieces; expected a larger one")
-        bound, least = _bounds(parts, _hermite(parts, d), d)
-        if (least > tolerance).any():
-            most = np.nanmax(least)
-            raise ParameterError(
-                f"tolerance {tolerance} given; rounding alone is {most:.3g} where the curve goes slowest; "
-                "expected a larger tolerance, or the curve split where it stands still"
-            )
-        small: Array = bound + rounding <= tolerance
-        return small
+        bound, least, lost = _bounds(parts, _hermite(parts, d), d)
+        done: Array = (bound + rounding <= tolerance) | (least > tolerance) | lost
+        return done
 
     parts, piece, place = halved([*H, *D, *S], enough)
-    stops = np.searchsorted(piece, np.arange(len(first) + 1))
-    q = _hermite(parts, d)
-    q[stops[following[smooth]], 0] = q[stops[1:][smooth] - 1, -1]  # a rounding off
-    bounds, _ = _bounds(parts, q, d)
     u = start[piece] + (end - start)[piece] * place[:, 0]
-    if not (bounds <= tolerance).all():
-        at = u[np.argmax(~(bounds <= tolerance))]
+    v = np.append(np.where(np.diff(piece), end[piece[:-1]], u[1:]), end[-1])
+    q = _hermite(parts, d)
+    bounds, least, _ = _bounds(parts, q, d)
+    known = bounds + rounding <= tolerance
+    still = np.where(known, 0.0, _extents(parts))
+    if (still > STILL * tolerance).any() or not known.any():
+        k = int(np.argmax(still))
         raise ParameterError(
-            f"the curve stands still near {at}, or nearly: no normal is proven; expected it split there"
+            f"tolerance {tolerance} given; rounding alone is {least[k]:.3g} near the parameter {u[k]}, where the curve "
+            "goes too slowly for its normal to be known; expected a larger tolerance"
         )
+    joints = _joints(known, piece, still, meets, smooth)
+    worst = float(bounds[known].max()) + rounding
     nets: list[Array] = []
     parameters: list[Array] = []
     joins_before: list[int] = []
-    count, worst = 0, float(bounds.max())
-    for i in range(len(first)):
-        rows = slice(stops[i], stops[i + 1])
-        nets.append(q[rows])
-        parameters.append(u[rows])
-        joins_before += [count] * len(q[rows])
-        if meets[i] and not smooth[i]:
-            j = following[i]
-            ends = q[stops[i + 1] - 1, -1], q[stops[j], 0]
-            join, off = _join(last[i], *ends, tangent[1][i], tangent[0][j], d, joins, tolerance)
-            worst = max(worst, off)
-            nets.append(join)
-            parameters.append(np.where(np.arange(len(join)), max(start[j], end[i]), end[i]))
-            joins_before += range(count, count + len(join))
-            count += len(join)
-        elif following[i] and start[following[i]] > end[i]:  # the curve pauses
-            nets.append(np.broadcast_to(q[stops[i + 1] - 1, -1], (1, 4, 2)))
-            parameters.append(end[i : i + 1])
-            joins_before.append(count)
+
+    def add(net: Array, at: Array, following: int = 0) -> None:
+        nets.append(net)
+        parameters.append(at)
+        count = joins_before[-1] if joins_before else 0
+        joins_before.extend(count + following * k for k in range(1, len(net) + 1))
+
+    def wait(point: Array, since: float, until: float) -> None:
+        if until > since:
+            add(np.broadcast_to(point, (1, 4, 2)), np.array([since]))
+
+    wait(q[joints.after[-1], 0], start[0], u[joints.after[-1]])
+    for k, (x, y) in enumerate(zip(joints.before.tolist(), joints.after.tolist(), strict=True)):
+        if joints.soft[k]:
+            q[y, 0] = q[x, -1]  # a rounding off
+        rows = slice(joints.after[k - 1], x + 1)
+        add(q[rows], u[rows])
+        until = u[y] if k + 1 < len(joints.before) else end[-1]
+        if joints.soft[k] or joints.torn[k]:
+            wait(q[x, -1], v[x], until)
+            continue
+        wide = joints.wide[k]
+        middle = (_point(parts, -1)[x] + _point(parts, 0)[y]) / 2
+        corner = Corner(
+            middle, q[x, -1], q[y, 0], _unit(parts[3:5], -1)[x], _unit(parts[3:5], 0)[y], y != (x + 1) % len(piece)
+        )
+        net, off = joined_at(corner, d, joins, tolerance - wide)
+        worst = max(worst, off + wide)
+        add(net, np.where(np.arange(len(net)), max(until, v[x]), v[x]), 1)
     closed = bool(curve.space.periodic and meets.all())
     at = np.append(np.concatenate(parameters), end[-1])
     share = (end[-1] - start[0]) / len(first)
-    breaks = at + share * np.append(joins_before, count) if count else at
+    breaks = at + share * np.append(0, joins_before)
     points = np.concatenate(nets)
-    return Offset(joined(points, breaks, True) if closed else from_bezier(points, breaks), worst, at)
+    spline = joined(points, breaks, True) if closed else from_bezier(points, breaks)
+    return Offset(spline, worst, at, (spline,))
+
+
+class _Joints(NamedTuple):
+    """Where parts with a proven normal do not go on as one piece; the last joint is that of the end and the start."""
+
+    #: the part before, and the one after
+    before: Array
+    after: Array
+    #: whether there is a jump between them, and whether they go on smoothly
+    torn: Array
+    soft: Array
+    #: how long the curve is between them, at most, where it stands still
+    wide: Array
+
+
+def _joints(known: Array, piece: Array, still: Array, meets: Array, smooth: Array) -> _Joints:
+    at = np.flatnonzero(known)
+    parted = (np.diff(at) > 1) | (np.diff(piece[at]) > 0)
+    before, after = at[np.append(parted, True)], np.roll(at[np.append(True, parted)], -1)
+    around = np.arange(len(before)) == len(before) - 1
+
+    def between(x: Array, start: Array, stop: Array) -> Array:
+        total = np.append(0, np.cumsum(x))
+        found: Array = total[stop] - total[start] + around * total[-1]
+        return found
+
+    torn = between(~meets, piece[before], piece[after]) > 0
+    soft = smooth[piece[before]] & (after == (before + 1) % len(piece)) & ~torn
+    return _Joints(before, after, torn, soft, between(still, before + 1, after))
 
 
 def _moving(curve: Spline) -> tuple[list[Pieces], Array, Array]:
@@ -253,11 +335,6 @@ def _unit(D: Sequence[Pieces], k: int) -> Array:
         return np.asarray(v / np.hypot(*v.T)[:, None])
 
 
-def _left(v: Array) -> Array:
-    """Return vectors turned to the left by a right angle."""
-    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
-
-
 def _hermite(parts: list[Pieces], d: float) -> Array:
     """Return cubics with the ends of c + d n, shifted, and its end derivatives c' − d τ det(D, D') / |D|²."""
     H, D, S = parts[:3], parts[3:5], parts[5:]
@@ -273,13 +350,13 @@ def _hermite(parts: list[Pieces], d: float) -> Array:
                 a, b = (np.stack([h.c[:, i] for h in D], axis=1) for i in (k, near))
                 turn = sign * m * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / (a * a).sum(axis=1)
                 speed = speed - d * tangent * turn[:, None]
-        q[:, k] = point + d * _left(tangent) + shift[:, k]
+        q[:, k] = point + d * left_of(tangent) + shift[:, k]
         q[:, 1 if k == 0 else 2] = q[:, k] + sign * speed / 3
     return q
 
 
-def _bounds(parts: list[Pieces], q: Array, d: float) -> tuple[Array, Array]:
-    """Return how far cubics are from c + d n at most, and how much of that is rounding."""
+def _bounds(parts: list[Pieces], q: Array, d: float) -> tuple[Array, Array, Array]:
+    """Return how far cubics are from c + d n at most, how much of that is rounding, and where no direction is known."""
     x, y, w = parts[:3]
     dx, dy = parts[3:5]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -306,42 +383,12 @@ def _bounds(parts: list[Pieces], q: Array, d: float) -> tuple[Array, Array]:
         rounding = np.where(valid, distance(along.e, off.e), 0)
         plain = np.hypot(abs(ex.c) + ex.e, abs(ey.c) + ey.e).max(axis=1) / weight + abs(d)
         rounding = np.where(plain > size, rounding, 0)
-        return np.fmin(size, plain) * (1 + 64 * UNIT), rounding
+        lost = (np.maximum(abs(dx.c), abs(dy.c)) <= 4 * slack).all(axis=1)
+        return np.fmin(size, plain) * (1 + 64 * UNIT), rounding, lost
 
 
-def _join(
-    corner: Array, start: Array, end: Array, before: Array, after: Array, d: float, joins: Joins, tolerance: float
-) -> tuple[Array, float]:
-    """Return cubics from an end to the next start around a corner, and how far they are from an arc if it is round."""
-    cross, dot = before[0] * after[1] - before[1] * after[0], before @ after
-    turn = math.atan2(cross, dot)
-    if math.pi - abs(turn) < ROUNDING:
-        turn = -math.copysign(math.pi, d)
-    corners = [start, end]
-    if turn * d < 0 and joins == "round":
-        return _arc(corner, start, end, before, turn, d, tolerance)
-    if turn * d < 0 and joins == "mitre" and MITRE * math.cos(turn / 2) >= 1:
-        tip = corner + d * _left(before + after) / (1 + dot)
-        corners = [start, tip, end]
-    third = np.array([3, 2, 1, 0])[:, None] / 3
-    return np.stack([third * a + (1 - third) * b for a, b in pairwise(corners)]), 0.0
-
-
-def _arc(
-    corner: Array, start: Array, end: Array, before: Array, turn: float, d: float, tolerance: float
-) -> tuple[Array, float]:
-    """Return cubics along an arc: with handles 4/3 tan(φ/4), |q|² − r² is from 0 to 4/27 sin⁶(φ/4) / cos²(φ/4) r²."""
-    rounding = 32 * UNIT * float(abs(corner).max() + abs(d))
-    for count in range(1, PIECES):
-        quarter = abs(turn) / count / 4
-        off = abs(d) * 2 / 27 * math.sin(quarter) ** 6 / math.cos(quarter) ** 2 + rounding
-        if quarter <= math.pi / 8 + ROUNDING and off <= tolerance:
-            break
-    else:
-        raise ParameterError(f"tolerance {tolerance} given; rounding alone is {rounding:.3g} at a corner")
-    angles = math.atan2(before[1], before[0]) + turn * np.arange(count + 1) / count
-    along = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    P = corner + d * _left(along)
-    P[0], P[-1] = start, end
-    handle = 4 / 3 * math.tan(abs(turn) / count / 4) * abs(d)
-    return np.stack([P[:-1], P[:-1] + handle * along[:-1], P[1:] - handle * along[1:], P[1:]], axis=1), off
+def _extents(parts: list[Pieces]) -> Array:
+    """Return how long control polygons are."""
+    P = np.stack([h.c for h in parts[:2]], axis=2) / parts[2].c[..., None]
+    found: Array = np.hypot(*np.diff(P, axis=1).T).sum(axis=0)
+    return found
