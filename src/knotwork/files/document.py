@@ -126,8 +126,8 @@ class Document:
 
     def extent(self) -> float:
         """Return the longest side of the box around all splines, as the file shows them."""
-        shown = getattr(self._content, "shown", None)
-        return float(extent(shown() if shown else list(self.splines)))
+        shown = getattr(self._content, "extent", None)
+        return float(shown() if shown else extent(list(self.splines)))
 
     def holds(self, changed: Mapping[int, Spline]) -> bool:
         """Tell whether the file has a place for splines that replace others: for all that its rows say, say."""

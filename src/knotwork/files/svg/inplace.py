@@ -7,6 +7,7 @@ bytes stay.
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -20,8 +21,8 @@ from knotwork.files.svg.compact import Encoder, Pen, digits_for, joined, moved, 
 from knotwork.files.svg.document import Place as DrawnAt
 from knotwork.files.svg.document import walk
 from knotwork.files.svg.drawing import pieces_of
-from knotwork.files.svg.notation import IDENTITY, Affine
-from knotwork.files.svg.outlines import curves
+from knotwork.files.svg.notation import Affine
+from knotwork.files.svg.outlines import mapped, outlined, reach
 from knotwork.files.svg.pathdata import Subpath
 from knotwork.files.svg.source import Span, span, spliced
 from knotwork.files.svg.tree import Element
@@ -57,17 +58,22 @@ class Drawing:
     data: bytes
     outlines: tuple[Outline, ...]
     splines: tuple[Spline, ...]
+    #: the Bézier points of each spline
+    nets: tuple[Array, ...]
     places: tuple[Place, ...]
     #: where each element is drawn, once for each time
     maps: tuple[tuple[int, Affine], ...]
 
-    def shown(self) -> list[Spline]:
-        """Return the splines as they are drawn, as often as they are."""
-        found = []
-        for k, (a, b, c, d, e, f) in self.maps:
-            drawn = [self.splines[i] for i in self.outlines[k].splines if i >= 0]
-            found += [s.transform([[a, c], [b, d]], [e, f]) for s in drawn]
-        return found
+    def extent(self) -> float:
+        """Return the longest side of the box around all that is drawn, up to the rounding of floats."""
+        drawn = [(self.nets[i], at) for k, at in self.maps for i in self.outlines[k].splines if i >= 0]
+        if not drawn:
+            return 0.0
+        wide: dict[int, list[Array]] = defaultdict(list)  # pieces of a degree, all at once
+        for nets, at in drawn:
+            wide[nets.shape[1]].append(mapped(nets, at))
+        low, high = zip(*(reach(np.concatenate(nets)) for nets in wide.values()), strict=True)
+        return float((np.max(high, axis=0) - np.min(low, axis=0)).max())
 
     def rewritten(
         self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
@@ -120,6 +126,7 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
         scales[id(element)] = max(scales.get(id(element), 0.0), _scale(drawn_at.map))
     outlines: list[Outline] = []
     splines: list[Spline] = []
+    nets: list[Array] = []
     places: list[Place] = []
     for key, (element, at) in once.items():
         subpaths = drawn.outline(element, at)
@@ -129,29 +136,31 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
         stands = None if declared else stands
         indices = []
         for number, subpath in enumerate(subpaths):
-            found = curves([subpath], IDENTITY)
+            found = outlined(subpath)
             indices.append(len(splines) if found else -1)
-            for spline in found:
-                splines.append(spline)
-                where = f"line {element.line}, <{element.tag}>"
-                places.append(
-                    Place(
-                        name=element.attributes.get("id"),
-                        layer=at.layer,
-                        closed=subpath.closed,
-                        filled=at.filled,
-                        stroked=at.stroked,
-                        units="px",
-                        where=f"{where}, subpath {number + 1}" if len(subpaths) > 1 else where,
-                        scale=scales[key],
-                        fixed=stands is None,
-                        straight=corners,
-                    )
+            if not found:
+                continue
+            splines.append(found.curve)
+            nets.append(found.nets)
+            where = f"line {element.line}, <{element.tag}>"
+            places.append(
+                Place(
+                    name=element.attributes.get("id"),
+                    layer=at.layer,
+                    closed=subpath.closed,
+                    filled=at.filled,
+                    stroked=at.stroked,
+                    units="px",
+                    where=f"{where}, subpath {number + 1}" if len(subpaths) > 1 else where,
+                    scale=scales[key],
+                    fixed=stands is None,
+                    straight=corners,
                 )
+            )
         outlines.append(Outline(element, stands, corners, subpaths, indices, scales[key]))
     position = {key: k for k, key in enumerate(once)}
     maps = tuple((position[key], place) for key, place in drawn_by)
-    return Drawing(data, tuple(outlines), tuple(splines), tuple(places), maps)
+    return Drawing(data, tuple(outlines), tuple(splines), tuple(nets), tuple(places), maps)
 
 
 def _scale(place: Affine) -> float:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.svg.notation import length
+from knotwork.files.svg.outlines import outlined, reach
 from knotwork.files.svg.pathdata import Subpath
 
 Box = tuple[float, float, float | None, float | None]
@@ -30,31 +30,9 @@ def origin(text: str, box: Box) -> tuple[float, float]:
 
 
 def box_of(paths: list[Subpath]) -> tuple[float, float, float, float] | None:
-    """Return the box of outlines as x, y, width, height; None if there are none."""
-    found: list[Array] = []
-    for path in paths:
-        here = path.start
-        found.append(np.array([here]))
-        for piece in path.pieces:
-            found.append(_extremes(np.array([here, *piece])))
-            here = piece[-1]
+    """Return the box of outlines as x, y, width, height; None if they go nowhere."""
+    found = [reach(each.nets) for each in map(outlined, paths) if each]
     if not found:
         return None
-    points = np.concatenate(found)
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = np.min([a for a, _ in found], axis=0), np.max([b for _, b in found], axis=0)
     return float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1])
-
-
-def _extremes(net: Array) -> Array:
-    """Return the ends of a piece, and its points where a coordinate turns."""
-    n = len(net) - 1
-    places = {0.0, 1.0}
-    for x in net.T if n > 1 else ():
-        d = np.diff(x)
-        roots = np.roots([d[1] - d[0], d[0]] if n == 2 else [d[0] - 2 * d[1] + d[2], 2 * (d[1] - d[0]), d[0]])
-        places |= {float(r.real) for r in np.atleast_1d(roots) if abs(r.imag) < 1e-12 and 0 < r.real < 1}
-    t = np.array(sorted(places))[:, None, None]
-    points = np.broadcast_to(net, (len(t), *net.shape))
-    for _ in range(n):  # de Casteljau
-        points = (1 - t) * points[:, :-1] + t * points[:, 1:]
-    return points[:, 0]

@@ -3,30 +3,39 @@
 from __future__ import annotations
 
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.files.svg.notation import Affine
+from knotwork.files.svg.notation import IDENTITY, Affine
 from knotwork.files.svg.pathdata import Point, Subpath
 from knotwork.geometry.bezier import joined, raised
 from knotwork.geometry.lengths import increasing
 from knotwork.spline import Spline
 
 
+class Outlined(NamedTuple):
+    """A subpath as a curve, and the Bézier points of its pieces."""
+
+    curve: Spline
+    nets: Array
+
+
 def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
     """Return the curve of each subpath under a map of the plane; one that goes nowhere is no curve."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        found = [_curve(path, place) for path in paths]
-    return [curve for curve in found if curve is not None]
+    found = [outlined(path, place) for path in paths]
+    return [each.curve for each in found if each is not None]
 
 
-def _curve(path: Subpath, place: Affine) -> Spline | None:
+@np.errstate(over="ignore", invalid="ignore")
+def outlined(path: Subpath, place: Affine = IDENTITY) -> Outlined | None:
+    """Return a subpath under a map of the plane; None if it goes nowhere."""
     pieces = _going_somewhere(path)
     if not pieces:
         return None
-    nets = _mapped(_nets(pieces), place)
+    nets = mapped(_nets(pieces), place)
     if not np.isfinite(nets).all():
         raise FileError("the outline reaches beyond float64")
     steps = np.hypot(*(nets[:, 1:] - nets[:, :-1]).T).T
@@ -38,7 +47,7 @@ def _curve(path: Subpath, place: Affine) -> Spline | None:
     t = increasing(chord / 2 + polygon / 2, path.closed)
     if not np.isfinite(t[-1]):
         raise FileError("the outline is longer than float64 can say")
-    return joined(nets, t, path.closed)
+    return Outlined(joined(nets, t, path.closed), nets)
 
 
 def _going_somewhere(path: Subpath) -> list[tuple[Point, ...]]:
@@ -58,7 +67,29 @@ def _nets(pieces: list[tuple[Point, ...]]) -> Array:
     return nets
 
 
-def _mapped(nets: Array, place: Affine) -> Array:
+@np.errstate(divide="ignore", invalid="ignore")
+def reach(nets: Array) -> tuple[Array, Array]:
+    """Return the least and the largest coordinates of pieces of degree 3 at most, up to the rounding of floats."""
+    ends = nets[:, [0, -1]].reshape(-1, nets.shape[2])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    inner = nets[:, 1:-1]
+    for c in range(nets.shape[2]) if nets.shape[1] > 2 else ():
+        beyond = ((inner[..., c] < low[c]) | (inner[..., c] > high[c])).any(axis=1)
+        P = raised(nets[beyond, :, c, None], 3)[..., 0].T
+        d = np.diff(P, axis=0)
+        a, b, e = d[0] - 2 * d[1] + d[2], d[0] - d[1], d[0]  # the derivative is a t² − 2b t + e, but for a factor
+        q = b + np.copysign(np.sqrt(b * b - a * e), b)
+        t = np.concatenate([q / a, e / q])
+        t = np.where((t > 0) & (t < 1), t, 0.0)
+        P = np.concatenate([P, P], axis=1)
+        while len(P) > 1:  # de Casteljau
+            P = (1 - t) * P[:-1] + t * P[1:]
+        low[c], high[c] = min(low[c], P.min(initial=low[c])), max(high[c], P.max(initial=high[c]))
+    return low, high
+
+
+def mapped(nets: Array, place: Affine) -> Array:
+    """Return nets under a map of the plane."""
     a, b, c, d, e, f = place
     x, y = nets[..., 0], nets[..., 1]
     return np.stack([a * x + c * y + e, b * x + d * y + f], axis=-1)
