@@ -119,3 +119,56 @@ def test_one_element_of_a_sprite(tmp_path: Path) -> None:
     assert place.scale == 3  # as it is drawn at its largest
     with pytest.raises(ParameterError, match="no element has the id 'd'"):
         kw.open(path, name="d")
+
+
+def lighter_text(tmp_path: Path, d: str, tolerance: float) -> tuple[str, tuple[int, int]]:
+    """Return the path data of a drawing of one path made lighter, and how many segments it had and has."""
+    path = tmp_path / "one.svg"
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100"><path d="{d}"/></svg>')
+    found = lighter(kw.open(path), tolerance)
+    data, rounded = found.document.bytes()
+    assert found.bound + rounded <= tolerance
+    path.write_bytes(data)
+    for old, new in zip(kw.open(path).splines, found.document.splines, strict=True):  # what it says is what it wrote
+        P, Q = dense(old), dense(new)
+        assert max(cKDTree(P).query(Q)[0].max(), cKDTree(Q).query(P)[0].max()) <= rounded + 0.05
+    return re.search(r' d="([^"]*)"', data.decode())[1], found.segments
+
+
+def test_arcs_stay_arcs_and_what_is_between_them_gets_lighter(tmp_path: Path) -> None:
+    wave = " ".join(f"L {20 + x} {80 + 5 * np.sin(x / 9):.6f}" for x in range(1, 60))
+    given = f"M10 20A 10.0,10.0 0 0 1 20 10 L20 80 {wave} A15 25 30 1 0 90 10"
+    text, (before, after) = lighter_text(tmp_path, given, 0.2)
+    assert text.startswith("M10 20a10 10 0 0110-10v70")
+    assert text.endswith("A15 25 30 1090 10")
+    assert before == 62
+    assert after < 15
+
+
+def test_a_closed_path_of_arcs_and_noise_keeps_them_across_its_start(tmp_path: Path) -> None:
+    bumps = " ".join(f"{30 + x} {60 + 0.03 * (-1) ** x:.6f}" for x in range(40, -1, -1))
+    text, (before, after) = lighter_text(tmp_path, f"M50 60.03L70 20A20 20 0 0 0 30 20L{bumps}z", 0.3)
+    assert len(re.findall("[Aa]20 20", text)) == 1
+    assert after < before / 5
+
+
+def test_of_each_subpath_the_shorter_text_is_taken(tmp_path: Path) -> None:
+    noisy = " ".join(f"{x} {50 + 0.01 * np.sin(x):.6f}" for x in range(60))
+    text, (before, after) = lighter_text(tmp_path, f"M 0 0 T 5 5 T 10 0 Z M 0 50 L {noisy}", 0.1)
+    assert text.startswith("M0 0t5 5 5-5z")
+    assert before == 3 + 59
+    assert after == 3 + 1
+
+
+def test_what_cannot_get_shorter_is_told_as_it_is(tmp_path: Path) -> None:
+    text, (before, after) = lighter_text(tmp_path, "M1 1h9a9 9 0 019 9v9", 0.01)
+    assert (text, before, after) == ("M1 1h9a9 9 0 019 9v9", 3, 3)
+
+
+def test_cubics_that_are_quadratics_are_written_so(tmp_path: Path) -> None:
+    given = kw.curve([[0, 0], [30, 60], [60, 0]], degree=2)
+    path = tmp_path / "q.svg"
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg"><path d="M 0 0 C 1 1 2 2 60 0"/></svg>')
+    data, bound = kw.open(path).replace(0, kw.elevate(given)).bytes()
+    assert b'd="M0 0Q30 60 60 0"' in data
+    assert bound < 1e-12

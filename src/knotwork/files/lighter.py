@@ -10,14 +10,16 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
+from knotwork.files.bent import Curve, bent
 from knotwork.files.borders import Arcs
 from knotwork.files.document import Document
 from knotwork.files.lines import DIGITS, Lines, digits_for, number, paced
+from knotwork.files.svg.inplace import Drawing
 from knotwork.files.uncrossed import Crossings, Reduce, apart, count_crossings, uncrossed
 from knotwork.geometry.bezier import joined, raised
 from knotwork.insertion import to_bezier
 from knotwork.removal import reduce as reduce_one
-from knotwork.removal.shapes.bezier import EFFORTS, reduce_bezier
+from knotwork.removal.shapes.bezier import EFFORTS
 from knotwork.removal.shapes.features import CORNER
 from knotwork.removal.shapes.reducing import breaks_by_length
 from knotwork.spline import Spline
@@ -82,47 +84,40 @@ def lighter(
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
-    places, wanted = document.places, _Wanted(effort, shared, no_crossings, even_if_longer)
-    if no_crossings and not isinstance(document.content, Lines):
+    places, content = document.places, document.content
+    wanted = _Wanted(effort, shared, no_crossings, even_if_longer)
+    if no_crossings and not isinstance(content, Lines):
         raise ParameterError(f"no_crossings given for {document.path}; expected a map or a track: GeoJSON or GPX")
     free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
     accuracy = {i: grid or ROUNDED * tolerance / places[i].scale for i in free}
-    room = {i: min(accuracy[i] * places[i].scale / tolerance, 0.5) for i in free}
-    straight = [i for i in free if places[i].straight]
-    nets = {i: _cubics(document.splines[i], i) for i in free if not places[i].straight}
+    arcs = content.arcs if isinstance(content, Drawing) else {}
     changed: dict[int, Spline] = {}
-    counts = {i: len(net) for i, net in nets.items()}
-    before = sum(counts.values()) + sum(_pieces(document.splines[i]) for i in straight)
-    worst = 0.0
-    for scale in sorted({places[i].scale for i in straight}):
-        alike = [i for i in straight if places[i].scale == scale]
-        allowed = (1 - room[alike[0]]) * tolerance / scale
-        new = _together(document, alike, allowed, accuracy, wanted)
-        for i, (line, bound) in zip(alike, new, strict=True):
-            changed[i], counts[i] = line, _pieces(line)
-            worst = max(worst, bound * scale)
-    curved = [i for i in free if not places[i].straight]
-    for scale in sorted({places[i].scale for i in curved}):
-        alike = [i for i in curved if places[i].scale == scale]
-        at = np.cumsum([0, *(len(nets[i]) for i in alike)])
-        closed = [places[i].closed for i in alike]
-        allowed = (1 - room[alike[0]]) * tolerance / scale
-        bent = reduce_bezier(
-            np.concatenate([nets[i] for i in alike]), at, allowed, closed=closed, effort=effort,
-            angle=CORNER if corners else None,
-        )  # fmt: skip
-        for k, i in enumerate(alike):
-            net = bent.nets[bent.at[k] : bent.at[k + 1]]
-            if len(net):
-                changed[i] = joined(net, breaks_by_length(net, (0.0, float(len(net))), closed[k]), closed[k])
-                counts[i] = len(net)
-                worst = max(worst, float(bent.bound[k]) * scale)
+    moved: dict[int, float] = {}
+    for scale in sorted({places[i].scale for i in free}):
+        alike = [i for i in free if places[i].scale == scale]
+        allowed = (1 - min(accuracy[alike[0]] * scale / tolerance, 0.5)) * tolerance / scale
+        straight = [i for i in alike if places[i].straight]
+        for i, (line, bound) in zip(straight, _together(document, straight, allowed, accuracy, wanted), strict=True):
+            changed[i], moved[i] = line, bound * scale
+        curved = [i for i in alike if not places[i].straight]
+        given = [Curve(_cubics(document, i), places[i].closed, arcs.get(i, ())) for i in curved]
+        found = bent(given, allowed, effort=effort, angle=CORNER if corners else None)
+        for i, new in zip(curved, found, strict=True):
+            if new:
+                t, closed = (0.0, float(len(new.nets))), places[i].closed
+                changed[i] = joined(new.nets, breaks_by_length(new.nets, t, closed), closed)
+                moved[i] = new.bound * scale
+    if isinstance(content, Drawing) and not even_if_longer:
+        for i in content.longer(changed, accuracy):
+            del changed[i], moved[i]
     after = document.with_splines(changed).rounding(accuracy).where_shorter()
     crossings = None
-    if isinstance(document.content, Lines):
+    if isinstance(content, Lines):
         crossings = count_crossings(document.splines), count_crossings(after.splines)
-    return Lighter(after, (before, sum(counts.values())), worst, crossings)
+    inside = sum(b - a - 1 for i in free for a, b in arcs.get(i, ()))  # pieces of an arc are one segment
+    segments = [sum(len(each.splines[i].space.breaks) - 1 for i in free) - inside for each in (document, after)]
+    return Lighter(after, (segments[0], segments[1]), max(moved.values(), default=0.0), crossings)
 
 
 class _Wanted(NamedTuple):
@@ -139,6 +134,8 @@ def _together(
 ) -> list[tuple[Spline, float]]:
     """Return polylines with few corners, as they are written, and how far each is from the one given."""
     content, lines = document.content, [document.splines[i] for i in alike]
+    if not lines:
+        return []
     reduce = _polylines(wanted.effort, digits_for(accuracy[alike[0]]) if isinstance(content, Lines) else DIGITS)
     arcs = Arcs(lines) if wanted.shared else None
     whole: set[int] = set()
@@ -184,12 +181,11 @@ def _rounded(line: Spline, given: Spline, digits: int) -> tuple[Spline, float]:
     return Spline(line.spaces, points), moved
 
 
-def _pieces(spline: Spline) -> int:
-    return len(spline.space.breaks) - 1
-
-
-def _cubics(spline: Spline, index: int) -> Array:
+def _cubics(document: Document, index: int) -> Array:
     """Return cubic Bézier points of a plane curve of degree 3 at most."""
+    spline, content = document.splines[index], document.content
+    if isinstance(content, Drawing) and spline is content.splines[index]:
+        return raised(content.nets[index], 3)
     if spline.parameters != 1 or spline.dim != 2 or spline.rational or spline.space.degree > 3:
         raise ParameterError(f"spline {index} is a {str(spline)[1:-1]}; expected a plane curve of degree 1 to 3")
     return raised(np.asarray(to_bezier(spline)[0]), 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 from knotwork.files.svg.pathdata import Arc, Point, Segment, Subpath, arc, end_of
@@ -18,9 +19,15 @@ class Pen(NamedTuple):
     here: Grid
     #: the command before, '' if there is none that the next may continue
     command: str
+    #: the number before, '' if the next needs no separator from it
+    last: str
     #: the handle that S or T would reflect, and for which of them
-    handle: Grid | None
-    smooth: str
+    handle: Grid | None = None
+    smooth: str = ""
+
+
+#: before anything is written
+START = Pen((0, 0), "", "")
 
 
 class Encoder:
@@ -31,30 +38,32 @@ class Encoder:
 
     def __init__(self, digits: int | None) -> None:
         self.digits = digits
+        #: whether coordinates may be relative: both ways, or never
+        self.ways = (False,) if digits is None else (True, False)
 
     def path(self, subpaths: list[Subpath]) -> str:
         """Return the path data of subpaths."""
-        text, pen = "", Pen((0, 0), "", None, "")
+        text, pen = "", START
         for subpath in subpaths:
-            more, pen = self.subpath(subpath, pen, first=not text)
-            text = joined(text, more)
+            more, pen = self.subpath(subpath, pen)
+            text += more
         return text
 
-    def subpath(self, path: Subpath, pen: Pen, *, first: bool = False) -> tuple[str, Pen]:
+    def subpath(self, path: Subpath, pen: Pen) -> tuple[str, Pen]:
         """Return the path data of one subpath after what was written before, and what a reader knows then."""
         start = self.grid(path.start)
-        text = self.shortest(pen, "M", [start], relative=not first)[0]
-        command = "l" if text[0] == "m" else "L"
-        pen = Pen(start, command, None, "")
+        found, command, last = self.shortest(pen, "M", [start], relative=pen is not START)
+        text, pen = [found], Pen(start, "l" if command == "m" else "L", last)
         segments = path.segments
         if path.closed and segments and len(segments[-1]) == 1 and not isinstance(segments[-1], Arc):
             segments = segments[:-1]  # z goes back to the start by itself
         for segment in segments:
             more, pen = self.segment(segment, pen)
-            text = joined(text, more)
+            text.append(more)
         if path.closed:
-            return text + "z", Pen(start, "", None, "")
-        return text, pen
+            text.append("z")
+            pen = Pen(start, "", "")
+        return "".join(text), pen
 
     def segment(self, segment: Segment, pen: Pen) -> tuple[str, Pen]:
         """Return the shortest text of a segment, and what a reader knows then."""
@@ -66,49 +75,52 @@ class Encoder:
             if end == pen.here:
                 return "", pen
             name = "H" if end[1] == pen.here[1] else "V" if end[0] == pen.here[0] else "L"
-            text, command = self.shortest(pen, name, points)
-            return text, Pen(end, command, None, "")
+            return self._after(pen, name, points, end)
         name, smooth = ("C", "S") if len(points) == 3 else ("Q", "T")
         handle = points[-2]
         after = (2 * end[0] - handle[0], 2 * end[1] - handle[1])
-        reflected = pen.handle if pen.smooth == smooth else pen.here
-        if points[0] == reflected:
-            text, command = self.shortest(pen, smooth, points[1:])
-        else:
-            text, command = self.shortest(pen, name, points)
-        return text, Pen(end, command, after, smooth)
+        if points[0] == (pen.handle if pen.smooth == smooth else pen.here):
+            name, points = smooth, points[1:]
+        return self._after(pen, name, points, end, after, smooth)
 
     def arc(self, segment: Arc, pen: Pen) -> tuple[str, Pen]:
         """Return the text of an arc: its radii and angle as they are, its end rounded."""
         end = self.grid(segment.end)
         shape = [shortest_float(x) for x in (segment.rx, segment.ry, segment.turned)]
-        flags = f"{int(segment.large)}{int(segment.sweep)}"
+        flags = f" {int(segment.large)}{int(segment.sweep)}"
         found = []
         for relative in self.ways:
             x, y = (end[0] - pen.here[0], end[1] - pen.here[1]) if relative else end
-            command = "a" if relative else "A"
-            last = separated([self.number(x), self.number(y)])
-            text = separated(shape) + " " + flags + last
-            found.append((text if pen.command == command else command + text, command))
-        text, command = min(found, key=lambda each: len(each[0]))
-        return text, Pen(end, command, None, "")
+            command, numbers = "a" if relative else "A", [self.number(x), self.number(y)]
+            text = separated(shape, pen.last) if command == pen.command else command + separated(shape)
+            found.append((text + flags + separated(numbers), command, numbers[-1]))
+        text, command, last = min(found, key=lambda each: len(each[0]))
+        return text, Pen(end, command, last)
 
-    def shortest(self, pen: Pen, name: str, points: list[Grid], *, relative: bool = True) -> tuple[str, str]:
-        """Return the shorter of the absolute and the relative command, without its letter where that is understood."""
-        found = []
+    def _after(self, pen: Pen, name: str, points: list[Grid], *rest: Any) -> tuple[str, Pen]:
+        text, command, last = self.shortest(pen, name, points)
+        return text, Pen(rest[0], command, last, *rest[1:])
+
+    def shortest(self, pen: Pen, name: str, points: list[Grid], *, relative: bool = True) -> tuple[str, str, str]:
+        """Return the shorter of the absolute and the relative command, without its letter where that is understood.
+
+        With it come the command and the last number.
+        """
+        best = ("", "", "")
         for far in self.ways if relative else (False,):
             dx, dy = pen.here if far else (0, 0)
             command = name.lower() if far else name
-            values = [(x - dx, y - dy) for x, y in points]
-            flat = [x for v in values for x in {"H": v[:1], "V": v[1:]}.get(name, v)]
-            text = separated([self.number(x) for x in flat])
-            found.append((text if pen.command == command else command + text, command))
-        return min(found, key=lambda each: len(each[0]))
-
-    @property
-    def ways(self) -> tuple[bool, ...]:
-        """Whether coordinates may be relative: both ways, or never."""
-        return (False,) if self.digits is None else (True, False)
+            if name == "H":
+                values = [points[0][0] - dx]
+            elif name == "V":
+                values = [points[0][1] - dy]
+            else:
+                values = [v for x, y in points for v in (x - dx, y - dy)]
+            numbers = [self.number(v) for v in values]
+            text = separated(numbers, pen.last) if command == pen.command else command + separated(numbers)
+            if not best[1] or len(text) < len(best[0]):
+                best = (text, command, numbers[-1])
+        return best
 
     def grid(self, point: Point) -> Grid:
         """Return a point in units of the last digit."""
@@ -118,7 +130,10 @@ class Encoder:
 
     def value(self, n: Any) -> float:
         """Return the float that a reader takes a number of units for."""
-        return float(self.number(n))
+        digits = self.digits
+        if digits is None:
+            return float(n)
+        return float(n / 10**digits if digits > 0 else n * 10**-digits)  # a quotient of integers is rounded once
 
     def number(self, n: Any) -> str:
         """Return the shortest text of a number of units."""
@@ -134,35 +149,23 @@ class Encoder:
         if not whole and len(part) > 3 and part.startswith("000"):  # 1e-5 is shorter than .00001
             small = part.lstrip("0")
             return f"{sign}{small}e-{len(part)}"
-        return sign + whole + (f".{part}" if part else "")
+        return f"{sign}{whole}.{part}" if part else sign + whole
 
 
 def _scaled(x: float, digits: int) -> int:
-    """Return the whole number nearest to x · 10^digits, by exact arithmetic."""
-    numerator, denominator = x.as_integer_ratio()
-    if digits >= 0:
-        numerator *= 10**digits
-    else:
-        denominator *= 10**-digits
-    return (2 * numerator + denominator) // (2 * denominator)
+    """Return a whole number near x · 10^digits: the nearest, but where floats cannot tell."""
+    return round(x * 10.0**digits) if abs(x) < 2.0**52 else round(Fraction(x) * Fraction(10) ** digits)
 
 
-def separated(numbers: list[str]) -> str:
-    """Return numbers in a row, parted only where a reader would take two for one."""
-    text = ""
+def separated(numbers: list[str], last: str = "") -> str:
+    """Return numbers in a row after another one, parted only where a reader would take two for one."""
+    text = []
     for number in numbers:
-        text = joined(text, number)
-    return text
-
-
-def joined(text: str, more: str) -> str:
-    """Return two texts in a row, parted by a space if a reader needs one."""
-    if not text or not more or text[-1].isalpha() or more[0].isalpha() or more[0] == "-":
-        return text + more
-    last = text[max(text.rfind(c) for c in " -MmLlHhVvCcSsQqTtAaZz,") + 1 :]
-    if more[0] == "." and ("." in last or "e" in last):
-        return text + more
-    return f"{text} {more}"
+        if last and number[0] != "-" and not (number[0] == "." and ("." in last or "e" in last)):
+            text.append(" ")
+        text.append(number)
+        last = number
+    return "".join(text)
 
 
 def shortest_float(x: float) -> str:
@@ -180,13 +183,15 @@ def moved(path: Subpath, encoder: Encoder) -> float:
 
     Control points move, and the curve no farther than they do; an arc is compared by the cubics that it is drawn as.
     """
-    worst, here = 0.0, path.start
-    rounded_here = _rounded(here, encoder)
-    worst = _away(here, rounded_here)
+    end = path.start
+    rounded_end = _rounded(end, encoder)
+    worst = _away(end, rounded_end)
     for segment in path.segments:
-        end = end_of(segment)
+        here, rounded_here, end = end, rounded_end, end_of(segment)
         rounded_end = _rounded(end, encoder)
         if isinstance(segment, Arc):
+            if (here, end) == (rounded_here, rounded_end):
+                continue
             before, after = arc(here, *segment), arc(rounded_here, *segment[:-1], rounded_end)
             if len(before) != len(after):
                 return float("inf")
@@ -196,7 +201,6 @@ def moved(path: Subpath, encoder: Encoder) -> float:
             worst = max([worst, *(_away(p, q) for p, q in pairs)])
         else:
             worst = max([worst, *(_away(p, _rounded(p, encoder)) for p in segment)])
-        here, rounded_here = end, rounded_end
     return worst
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -17,12 +17,12 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.places import Place
-from knotwork.files.svg.compact import Encoder, Pen, digits_for, joined, moved, separated
+from knotwork.files.svg.compact import START, Encoder, digits_for, moved, separated
 from knotwork.files.svg.document import Place as DrawnAt
 from knotwork.files.svg.document import walk
 from knotwork.files.svg.drawing import pieces_of
 from knotwork.files.svg.notation import Affine
-from knotwork.files.svg.outlines import mapped, outlined, reach
+from knotwork.files.svg.outlines import Arched, mapped, outlined, reach
 from knotwork.files.svg.pathdata import Subpath
 from knotwork.files.svg.source import Span, span, spliced
 from knotwork.files.svg.tree import Element
@@ -49,6 +49,30 @@ class Outline(NamedTuple):
     splines: list[int]
     #: the largest scale at which it is drawn
     scale: float
+    #: the arcs in each of its splines
+    arcs: dict[int, list[Arched]]
+
+
+class Written(NamedTuple):
+    """Path data of an outline."""
+
+    text: str
+    #: how far each subpath is at most from what is to be written
+    moved: list[float]
+    #: the splines of which the new text is taken
+    new: set[int]
+
+
+class Known(NamedTuple):
+    """What was written, and what for: it need not be made twice."""
+
+    allowed: list[float]
+    splines: dict[int, Spline]
+    written: Written
+
+    def says(self, changed: dict[int, Spline]) -> bool:
+        """Tell whether it has these splines, and no others, as new ones."""
+        return changed.keys() == self.splines.keys() and all(changed[i] is s for i, s in self.splines.items())
 
 
 @dataclass(frozen=True)
@@ -63,6 +87,14 @@ class Drawing:
     places: tuple[Place, ...]
     #: where each element is drawn, once for each time
     maps: tuple[tuple[int, Affine], ...]
+    #: the last text of each outline
+    _known: dict[Span, Known] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def arcs(self) -> dict[int, list[tuple[int, int]]]:
+        """The pieces of splines that are arcs: from a to b − 1, for each pair a, b."""
+        found = {i: each for outline in self.outlines for i, each in outline.arcs.items()}
+        return {i: [(arc.first, arc.first + len(arc.nets)) for arc in each] for i, each in found.items()}
 
     def extent(self) -> float:
         """Return the longest side of the box around all that is drawn, up to the rounding of floats."""
@@ -87,25 +119,43 @@ class Drawing:
         accuracy : mapping from int to float
             How far rounding may move the points of each spline, in the same coordinates; by default not at all.
         even_if_longer : bool
-            Whether to write path data that has more bytes than there were.
+            Whether to write path data that has more bytes than there were; else of each subpath the shorter is written.
         """
         values: dict[Span, bytes] = {}
         worst = 0.0
+        for outline, found in self._texts(changed, accuracy, even_if_longer):
+            assert outline.span is not None
+            values[outline.span] = found.text.encode()
+            worst = max([worst, *(bound * outline.scale for bound in found.moved)])
+        return spliced(self.data, values), worst
+
+    def longer(self, changed: Mapping[int, Spline], accuracy: Mapping[int, float]) -> set[int]:
+        """Return the numbers of splines that stay as they were, as their new text would be no shorter."""
+        return {*changed}.difference(*(found.new for _, found in self._texts(changed, accuracy, False)))
+
+    def _texts(
+        self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], longer: bool
+    ) -> Iterator[tuple[Outline, Written]]:
+        """Yield the outlines whose data is replaced, with what by."""
         for outline in self.outlines:
-            if not any(i in changed or i in accuracy for i in outline.splines):
+            some = {i: changed[i] for i in outline.splines if i in changed}
+            if not some and not any(i in accuracy for i in outline.splines):
                 continue
             if outline.span is None:
-                if any(i in changed for i in outline.splines):
+                if some:
                     where = f"line {outline.element.line}, <{outline.element.tag}>"
                     raise FileError(f"{where}: its outline does not stand there as path data, so it cannot be replaced")
                 continue
-            text, bound = _text(outline, changed, accuracy)
+            allowed = [accuracy.get(i, 0.0) if i >= 0 else math.inf for i in outline.splines]
+            known = self._known.get(outline.span)
+            if known and not longer and known.allowed == allowed and known.says(some):
+                found = known.written
+            else:
+                found = _text(outline, some, allowed, longer)
+                self._known[outline.span] = Known(allowed, {i: some[i] for i in found.new}, found)
             a, b = outline.span
-            asked = even_if_longer and any(i in changed for i in outline.splines)
-            if asked or len(text) < b - a:
-                values[outline.span] = text.encode()
-                worst = max(worst, bound * outline.scale)
-        return spliced(self.data, values), worst
+            if (longer and some) or len(found.text) < b - a:
+                yield outline, found
 
 
 def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = None) -> Drawing:
@@ -134,12 +184,14 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
         corners = element.tag in ("polyline", "polygon")
         stands = span(data, element, "points" if corners else "d") if element.tag == "path" or corners else None
         stands = None if declared else stands
-        indices = []
+        indices, arcs = [], {}
         for number, subpath in enumerate(subpaths):
             found = outlined(subpath)
             indices.append(len(splines) if found else -1)
             if not found:
                 continue
+            if found.arcs:
+                arcs[len(splines)] = found.arcs
             splines.append(found.curve)
             nets.append(found.nets)
             where = f"line {element.line}, <{element.tag}>"
@@ -157,7 +209,7 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
                     straight=corners,
                 )
             )
-        outlines.append(Outline(element, stands, corners, subpaths, indices, scales[key]))
+        outlines.append(Outline(element, stands, corners, subpaths, indices, scales[key], arcs))
     position = {key: k for k, key in enumerate(once)}
     maps = tuple((position[key], place) for key, place in drawn_by)
     return Drawing(data, tuple(outlines), tuple(splines), tuple(nets), tuple(places), maps)
@@ -168,37 +220,38 @@ def _scale(place: Affine) -> float:
     return float(np.linalg.norm(np.array([[place[0], place[2]], [place[1], place[3]]]), 2))
 
 
-def _text(outline: Outline, changed: Mapping[int, Spline], accuracy: Mapping[int, float]) -> tuple[str, float]:
-    """Return the shortest path data of an outline, and how far rounding moves it."""
-    allowed = [accuracy.get(i, 0.0) if i >= 0 else math.inf for i in outline.splines]
+def _text(outline: Outline, changed: Mapping[int, Spline], allowed: list[float], longer: bool) -> Written:
+    """Return the shortest path data of an outline whose subpaths rounding may move so far."""
     least = min(allowed, default=0.0)
     if 0 < least < math.inf:
         digits = digits_for(least)
         for more in range(3):  # an arc may need a digit or two more than a point
-            text, worst = _written(outline, changed, Encoder(digits + more))
-            if all(w <= a for w, a in zip(worst, allowed, strict=True)):
-                return text, max(worst, default=0.0)
-    text, worst = _written(outline, changed, Encoder(None))
-    return text, max(worst, default=0.0)
+            found = _written(outline, changed, Encoder(digits + more), longer)
+            if all(w <= a for w, a in zip(found.moved, allowed, strict=True)):
+                return found
+    return _written(outline, changed, Encoder(None), longer)
 
 
-def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -> tuple[str, list[float]]:
-    """Return the path data of an outline, and how far rounding moves each subpath."""
-    text, pen = "", Pen((0, 0), "", None, "")
-    worst = []
+def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder, longer: bool) -> Written:
+    """Return the path data of an outline: of each subpath the shorter of the new text and the old one, if asked."""
     if outline.corners:
         return _points(outline, changed, encoder)
+    parts, pen, worst, new = [], START, [], set()
+    within = STRAIGHT / 2 * 10.0**-encoder.digits if encoder.digits is not None else 0.0
     for subpath, i in zip(outline.subpaths, outline.splines, strict=True):
-        within = STRAIGHT / 2 * 10.0**-encoder.digits if encoder.digits is not None else 0.0
-        way, off = subpath_of(changed[i], subpath.closed, within) if i in changed else (subpath, 0.0)
-        more, pen = encoder.subpath(way, pen, first=not text)
+        ways = [] if i in changed and longer else [(subpath, 0.0)]
+        if i in changed:
+            ways.append(subpath_of(changed[i], subpath.closed, within, outline.arcs.get(i, ())))
+        found = [(encoder.subpath(way, pen), way, off) for way, off in ways]
+        (text, pen), way, off = min(found, key=lambda each: len(each[0][0]))
+        parts.append(text)
         worst.append(off if encoder.digits is None else off + moved(way, encoder))
-        text = joined(text, more)
-    return text, worst
+        new |= {i} if way is not subpath else set()
+    return Written("".join(parts), worst, new)
 
 
-def _points(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -> tuple[str, list[float]]:
-    """Return the corners of a polyline or polygon as text, and how far rounding moves them."""
+def _points(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -> Written:
+    """Return the corners of a polyline or polygon as text."""
     (subpath,), (i,) = outline.subpaths, outline.splines
     way, off = subpath_of(changed[i], subpath.closed) if i in changed else (subpath, 0.0)
     if any(len(segment) > 1 for segment in way.segments):
@@ -207,42 +260,68 @@ def _points(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -
     if way.closed and points[-1] == points[0]:
         points.pop()
     numbers = [encoder.number(x) for point in points for x in encoder.grid(point)]
-    return separated(numbers), [off if encoder.digits is None else off + moved(way, encoder)]
+    return Written(separated(numbers), [off if encoder.digits is None else off + moved(way, encoder)], {*changed} & {i})
 
 
-def subpath_of(spline: Spline, closed: bool, within: float = 0.0) -> tuple[Subpath, float]:
-    """Return a curve as a subpath, and how far that is from it; pieces within a distance of a line become lines."""
+def subpath_of(spline: Spline, closed: bool, within: float = 0.0, arcs: Sequence[Arched] = ()) -> tuple[Subpath, float]:
+    """Return a curve as a subpath, and how far that is from it.
+
+    Pieces within a distance of a line or a quadratic become one; those that are the pieces of an arc become that.
+    """
     nets, off = pieces_of(spline, "the new spline", NEAR)
     if (nets[1:, 0] != nets[:-1, -1]).any():
         raise FileError("the new spline has a jump; expected a curve without one, for one subpath")
     path = Subpath(_point(nets[0, 0]))
-    bent = 0.0
-    for net in nets:
-        away = from_line(net)
-        if away <= within + 4 * np.finfo(float).eps * np.abs(net).max():
-            path.line(_point(net[-1]))
-            bent = max(bent, away)
+    allowed = within + 4 * np.finfo(float).eps * np.abs(nets).max(axis=(1, 2))
+    away, bent = from_line(nets), np.zeros(len(nets))
+    straight = away <= allowed
+    middle, beside = from_quadratic(nets)
+    simple = ~straight & (beside <= allowed)
+    bent[straight], bent[simple] = away[straight], beside[simple]
+    known = {arc.nets[0].tobytes(): arc for arc in arcs}
+    k, rows = 0, nets.tolist()
+    while k < len(nets):
+        arc = known.get(nets[k].tobytes()) if known else None
+        if arc and np.array_equal(nets[k : k + len(arc.nets)], arc.nets):
+            path.segments.append(arc.arc)
+            bent[k : k + len(arc.nets)] = 0
+            k += len(arc.nets)
+            continue
+        if straight[k]:
+            path.line(_point(nets[k, -1]))
+        elif simple[k]:
+            path.segments.append((_point(middle[k]), _point(nets[k, -1])))
         else:
-            path.segments.append(tuple(_point(p) for p in net[1:]))
+            path.segments.append(tuple((x, y) for x, y in rows[k][1:]))
+        k += 1
     if closed:
         path.close()
-    return path, off + bent
+    return path, off + float(bent.max(initial=0))
 
 
-def from_line(net: Array) -> float:
-    """Return how far a piece is from the line from end to end at most; infinity if it does not run straight along it.
+def from_line(nets: Array) -> Array:
+    """Return how far each piece is from the line from end to end; infinity if it does not run straight along it.
 
     Where the feet of its points follow one another, so do those of the curve, and no point of it is farther off than
     the farthest of them.
     """
-    chord = net[-1] - net[0]
-    length = float(np.hypot(*chord))
-    if length == 0:
-        return float("inf") if np.abs(net - net[0]).max() > 0 else 0.0
-    feet = (net - net[0]) @ chord / length
-    if (np.diff(feet) < 0).any():
-        return float("inf")
-    return float(np.abs((net - net[0]) @ np.array([-chord[1], chord[0]]) / length).max())
+    chord = nets[:, -1] - nets[:, 0]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    x, y = np.moveaxis((nets - nets[:, :1]) / np.where(length > 0, length, 1)[:, None, None], 2, 0)
+    feet = x * chord[:, :1] + y * chord[:, 1:]
+    off = np.abs(y * chord[:, :1] - x * chord[:, 1:]).max(axis=1)
+    forward = (np.diff(feet, axis=1) >= 0).all(axis=1) & ((length > 0) | (nets == nets[:, :1]).all(axis=(1, 2)))
+    return np.where(forward, off, np.inf)
+
+
+def from_quadratic(nets: Array) -> tuple[Array, Array]:
+    """Return the middle points of quadratics near cubics, and how far these are at most; infinity if not cubic."""
+    if nets.shape[1] != 4:
+        return nets[:, 0], np.full(len(nets), np.inf)
+    a, b, c, d = nets.transpose(1, 0, 2)
+    middle = (3 * (b + c) - a - d) / 4
+    off = np.stack([(a + 2 * middle) / 3 - b, (d + 2 * middle) / 3 - c])
+    return middle, np.hypot(off[..., 0], off[..., 1]).max(axis=0)
 
 
 def _point(p: Array) -> tuple[float, float]:

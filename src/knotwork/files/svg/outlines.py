@@ -10,17 +10,27 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.svg.notation import IDENTITY, Affine
-from knotwork.files.svg.pathdata import Point, Subpath
+from knotwork.files.svg.pathdata import Arc, Point, Subpath, arc
 from knotwork.geometry.bezier import joined, raised
 from knotwork.geometry.lengths import increasing
 from knotwork.spline import Spline
 
 
+class Arched(NamedTuple):
+    """An arc of a subpath, as pieces of the curve."""
+
+    arc: Arc
+    nets: Array
+    #: the first of the pieces
+    first: int
+
+
 class Outlined(NamedTuple):
-    """A subpath as a curve, and the Bézier points of its pieces."""
+    """A subpath as a curve, the Bézier points of its pieces, and which of them are arcs."""
 
     curve: Spline
     nets: Array
+    arcs: list[Arched]
 
 
 def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
@@ -32,7 +42,7 @@ def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
 @np.errstate(over="ignore", invalid="ignore")
 def outlined(path: Subpath, place: Affine = IDENTITY) -> Outlined | None:
     """Return a subpath under a map of the plane; None if it goes nowhere."""
-    pieces = _going_somewhere(path)
+    pieces, arcs = _going_somewhere(path)
     if not pieces:
         return None
     nets = mapped(_nets(pieces), place)
@@ -40,20 +50,32 @@ def outlined(path: Subpath, place: Affine = IDENTITY) -> Outlined | None:
         raise FileError("the outline reaches beyond float64")
     steps = np.hypot(*(nets[:, 1:] - nets[:, :-1]).T).T
     polygon = steps.sum(axis=1)
-    nets, polygon = nets[polygon > 0], polygon[polygon > 0]
+    if not polygon.all():  # of a piece so short that its length is lost
+        nets, polygon, arcs = nets[polygon > 0], polygon[polygon > 0], []
     if not len(nets):
         return None
     chord = np.hypot(*(nets[:, -1] - nets[:, 0]).T)
     t = increasing(chord / 2 + polygon / 2, path.closed)
     if not np.isfinite(t[-1]):
         raise FileError("the outline is longer than float64 can say")
-    return Outlined(joined(nets, t, path.closed), nets)
+    arched = [Arched(each, nets[a:b], a) for each, a, b in arcs if a < b]
+    return Outlined(joined(nets, t, path.closed), nets, arched)
 
 
-def _going_somewhere(path: Subpath) -> list[tuple[Point, ...]]:
-    """Return the points of each piece, the first one included; pieces whose points are all equal are left out."""
-    starts = [path.start, *(piece[-1] for piece in path.pieces)]
-    return [(a, *piece) for a, piece in zip(starts, path.pieces, strict=False) if any(p != a for p in piece)]
+def _going_somewhere(path: Subpath) -> tuple[list[tuple[Point, ...]], list[tuple[Arc, int, int]]]:
+    """Return the points of each piece, the first one included, and which are arcs; those that stay are left out."""
+    pieces: list[tuple[Point, ...]] = []
+    arcs = []
+    here = path.start
+    for segment in path.segments:
+        first = len(pieces)
+        for piece in arc(here, *segment) if isinstance(segment, Arc) else (segment,):
+            if any(p != here for p in piece):
+                pieces.append((here, *piece))
+            here = piece[-1]
+        if isinstance(segment, Arc):
+            arcs.append((segment, first, len(pieces)))
+    return pieces, arcs
 
 
 def _nets(pieces: list[tuple[Point, ...]]) -> Array:
