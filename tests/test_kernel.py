@@ -553,3 +553,24 @@ def test_compiled_code_that_checks_indices_is_kept_apart():
 
     assert said("print(last_at_most.digest)", "0") != said("print(last_at_most.digest)", "1")
     assert "IndexError" in said("last_at_most.compiled(np.zeros(3), 0, 50, 1.0)", "1")
+
+
+def test_what_only_kernels_call_is_no_machine_code_of_its_own(tmp_path):
+    """Numba would optimise each kernel again in each that calls it: only what Python calls is optimised and kept."""
+    write_package(tmp_path)
+    code = """
+        import numpy as np
+        from numba.core import codegen
+        from edited.above import total
+        from edited.below import term
+        optimised = []
+        optimise = codegen.CPUCodeLibrary._optimize_final_module
+        codegen.CPUCodeLibrary._optimize_final_module = lambda self: (optimised.append(self.name), optimise(self))
+        assert total(np.array([1.0, 2.0])) == 5.0
+        assert [name for name in optimised if name == "term"] == [], optimised
+        assert [name for name in optimised if name == "total"] == ["total"], optimised
+        assert term(2.0) == 3.0 and "term" in optimised  # called from Python it is a whole
+    """
+    run(code, tmp_path, KNOTWORK_JIT="always", KNOTWORK_CACHE=str(tmp_path / "cache"), PYTHONDONTWRITEBYTECODE="1")
+    kept = {path.parent.parent.name.partition("-")[0] for path in (tmp_path / "cache").rglob("*.nbc")}
+    assert kept == {"total", "term"}

@@ -167,15 +167,30 @@ class Kernel:
 
     @property
     def compiled(self) -> Callable[..., Any]:
-        """The source compiled by Numba, kept on disk where possible."""
+        """The source compiled by Numba, with all that it calls; kept on disk where possible."""
         if self._compiled is None:
+            from knotwork.arithmetic import compiling
+
             with _lock:
                 if self._compiled is None:
-                    bound = self._bound({name: callee.compiled for name, callee in self._callees()})
-                    if self.names:  # what came from the cache is linked by name, and a variant shares its own
-                        bound.__qualname__ += f"_{self.digest}"
-                    self._compiled = _compile(bound, self.digest, self.options)
+                    if WATCHERS:
+                        compiling.watch()
+                    directory = cache_directory() / f"{self.source.__name__}-{self.digest}"
+                    self._compiled = compiling.whole(self._bound_to_parts(), self.options, directory)
         return self._compiled
+
+    @functools.cached_property
+    def part(self) -> Callable[..., Any]:
+        """The source for Numba to take into the kernels that call it."""
+        from knotwork.arithmetic import compiling
+
+        return compiling.part(self._bound_to_parts(), self.options)
+
+    def _bound_to_parts(self) -> FunctionType:
+        bound = self._bound({name: callee.part for name, callee in self._callees()})
+        if self.names:  # what came from the cache is linked by name, and a variant shares its own
+            bound.__qualname__ += f"_{self.digest}"
+        return bound
 
     @functools.cached_property
     def digest(self) -> str:
@@ -256,58 +271,3 @@ def cache_directory() -> Path:
         return Path(given)
     base = os.environ.get("LOCALAPPDATA" if os.name == "nt" else "XDG_CACHE_HOME")
     return (Path(base) if base else Path.home() / ".cache") / "knotwork"
-
-
-@functools.cache
-def _watch() -> None:
-    """Have Numba tell `WATCHERS` when it begins and ends to compile."""
-    from numba.core import event
-
-    class Watch(event.Listener):  # type: ignore[misc]
-        def on_start(self, _: Any) -> None:
-            for watcher in WATCHERS:
-                watcher(True)
-
-        def on_end(self, _: Any) -> None:
-            for watcher in WATCHERS:
-                watcher(False)
-
-    event.register("numba:compile", Watch())
-
-
-def _compile(bound: FunctionType, digest: str, options: dict[str, Any]) -> Callable[..., Any]:
-    """Compile, with a disk cache in a directory of this very source; without one if it is not writable."""
-    import numba
-
-    if WATCHERS:
-        _watch()
-
-    def dispatcher() -> Any:
-        result: Any = numba.njit(**options)(bound)
-        choose = result.get_call_template
-        # a literal among the arguments is a number like others; Numba would compile the kernel anew for each
-        result.get_call_template = lambda args, kws: choose(tuple(map(numba.types.unliteral, args)), kws)
-        return result
-
-    cached, previous = dispatcher(), numba.config.CACHE_DIR
-    try:
-        directory = cache_directory() / f"{bound.__name__}-{digest}"
-        numba.config.CACHE_DIR = str(directory)
-        cached.enable_caching()
-    except (RuntimeError, OSError):  # no writable place
-        return dispatcher()  # type: ignore[no-any-return]
-    finally:
-        numba.config.CACHE_DIR = previous
-    cache = cached._cache
-    if not str(cache.cache_path).startswith(str(directory)):
-        return dispatcher()  # type: ignore[no-any-return]  # Numba's other places are not keyed by the digest
-    save = cache.save_overload
-
-    def save_if_possible(*args: Any) -> None:
-        try:
-            save(*args)
-        except OSError:  # the disk is full, or the directory was made read-only since
-            cache.disable()
-
-    cache.save_overload = save_if_possible
-    return cached  # type: ignore[no-any-return]
