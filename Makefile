@@ -4,10 +4,12 @@ PYTHON ?= python3
 BIN := .venv/bin
 # Processes that share the tests: all cores unless told otherwise, as in `make test CORES=1`.
 CORES ?= auto
+# Drawings of each package that `make bench-files` takes; all if empty.
+SAMPLE ?= 300
 # Random results of each kind that `make check-removal` and `make check-geometry` work out again.
 NUMBER ?= 1000
 
-.PHONY: help demo book docs test slow thorough bounds lint bench bench-removal check-removal check-geometry methods crossovers accuracy clean
+.PHONY: help demo book docs test slow thorough bounds lint bench bench-fonts bench-files bench-removal check-removal check-geometry methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -44,6 +46,9 @@ bench: .venv/tested  ## race this library and the peers that are installed
 
 bench-fonts: .venv/tested  ## points of glyphs beside cu2qu and qu2cu
 	$(BIN)/python benchmarks/fonts.py
+
+bench-files: .venv/tested  ## thousands of drawings made lighter, drawn before and after, beside svgo and Inkscape: make bench-files SAMPLE=
+	$(BIN)/python benchmarks/drawings.py $(if $(SAMPLE),--sample $(SAMPLE))
 
 bench-removal: .venv/tested  ## control points that `reduce` leaves, and its time, beside peers
 	$(BIN)/python benchmarks/removal.py

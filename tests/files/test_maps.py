@@ -13,6 +13,7 @@ import knotwork as kw
 from knotwork.cli import main
 from knotwork.errors import FileError
 from knotwork.files.lighter import lighter
+from knotwork.geometry.lengths import increasing
 
 
 def wavy(a, b, count=60):
@@ -214,3 +215,10 @@ def test_damaged_tracks(tmp_path, text, message):
     path.write_text(text)
     with pytest.raises(FileError, match=message):
         kw.open(path)
+
+
+def test_parameters_that_follow_a_late_start_stay_apart() -> None:
+    t = increasing(np.array([0.0, 1e-18, 2.0, 0.0]), start=26.7)
+    assert t[0] == 26.7
+    assert (np.diff(t) > 0).all()
+    assert abs(t[-1] - 28.7) < 1e-13

@@ -131,4 +131,4 @@ def _together(chosen: list[tuple[Array, Array, float]], pieces: list[Piece], sta
         at += length
         end = Q[-1:]
     together = np.concatenate([*places, [at]])
-    return np.concatenate([*points, end]), together[0] + increasing(np.diff(together), False)
+    return np.concatenate([*points, end]), increasing(np.diff(together), start=together[0])

@@ -183,7 +183,7 @@ def paced(reduction: Any, before: Spline) -> Spline:
     places = np.interp(np.arange(start, start + len(after.space.breaks)), second, first)
     turn, rest = np.divmod(places, count) if before.space.periodic else (0 * places, places)
     u = np.interp(rest, np.arange(count + 1), b) + turn * (b[-1] - b[0])
-    t = u[0] + increasing(np.diff(u), after.space.periodic)
+    t = increasing(np.diff(u), after.space.periodic, u[0])
     if after.space.periodic:
         return Spline(SplineSpace(1, t, periodic=True), np.roll(after.coefficients, -start, axis=0))
     return polyline(after.coefficients, t, False)

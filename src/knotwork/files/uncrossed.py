@@ -170,4 +170,4 @@ def _chained(runs: list[_Part], count: int) -> _Part:
     points = np.concatenate([*(run.points[:-1] for run in runs), runs[-1].points[-1:]])
     t = np.concatenate([*(run.t[:-1] for run in runs), runs[-1].t[-1:]])
     first, many = (np.concatenate([run[k] for run in runs]) for k in (2, 3))
-    return _Part(points, t[0] + increasing(np.diff(t)), first, many, count, max(run.bound for run in runs))
+    return _Part(points, increasing(np.diff(t), start=t[0]), first, many, count, max(run.bound for run in runs))

@@ -10,8 +10,8 @@ from knotwork.arithmetic.arrays import Array
 SHORTEST = 2.0**-28
 
 
-def increasing(lengths: Array, closed: bool = False) -> Array:
-    """Return 0 and the sums of the first 1, 2, … lengths, each (if finite) at least the next float after the last.
+def increasing(lengths: Array, closed: bool = False, start: float = 0.0) -> Array:
+    """Return a start, and it plus the first 1, 2, … lengths, each (if finite) at least the next float after the last.
 
     So breaks differ where points do, even where a length is lost in rounding; those of a period, by what can be
     continued around its seam.
@@ -19,7 +19,7 @@ def increasing(lengths: Array, closed: bool = False) -> Array:
     with np.errstate(over="ignore"):
         if closed:
             lengths = np.maximum(lengths, SHORTEST * lengths.sum())
-        t = np.concatenate([[0.0], np.cumsum(lengths)])
+        t = start + np.concatenate([[0.0], np.cumsum(lengths)])
     if not np.isfinite(t[-1]):
         return t
     for i in np.flatnonzero(t[1:] <= t[:-1]) + 1:
