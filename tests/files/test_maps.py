@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.spatial import cKDTree
 
 import knotwork as kw
 from knotwork.cli import main
@@ -222,3 +223,49 @@ def test_parameters_that_follow_a_late_start_stay_apart() -> None:
     assert t[0] == 26.7
     assert (np.diff(t) > 0).all()
     assert abs(t[-1] - 28.7) < 1e-13
+
+
+def on_the_ground(degrees: np.ndarray) -> np.ndarray:
+    """Return where points of the ellipsoid WGS 84 are in space, in metres: a chord is no longer than the ground."""
+    longitude, latitude = np.radians(degrees).T
+    square = 0.0818191908426215**2
+    n = 6378137 / np.sqrt(1 - square * np.sin(latitude) ** 2)
+    level = n * np.cos(latitude)
+    return np.stack([level * np.cos(longitude), level * np.sin(longitude), n * (1 - square) * np.sin(latitude)], axis=1)
+
+
+@pytest.mark.parametrize("latitude", [0.0, 47.0, -65.0, 89.0])
+def test_lengths_on_the_ground(tmp_path: Path, latitude: float) -> None:
+    """In space, which knows nothing of degrees, no sample is farther off than the metres that were asked for."""
+    s = np.linspace(0, 1, 2000)
+    east = 2000 / (111_320 * np.cos(np.radians(latitude))) if latitude < 89 else 30.0
+    track = np.stack([10 + east * (9 * s + np.sin(60 * s)), latitude + 0.01 * np.cos(47 * s)], axis=1)
+    text = {"type": "LineString", "coordinates": track.tolist()}
+    (tmp_path / "a.geojson").write_text(json.dumps(text))
+    words = ["reduce", str(tmp_path / "a.geojson"), "-t", "50m", "-o", str(tmp_path / "b.geojson"), "--json"]
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert (told["tolerance"], told["units"]) == (50.0, "metres")
+    assert 30 < told["bound"] <= 50
+    (before,), (after,) = kw.read(tmp_path / "a.geojson"), kw.read(tmp_path / "b.geojson")
+    assert len(after.points) < 300
+    P, Q = (on_the_ground(c(np.linspace(*c.space.domain, 200_000))) for c in (before, after))
+    away = max(cKDTree(P).query(Q)[0].max(), cKDTree(Q).query(P)[0].max())
+    apart = max(np.hypot.reduce(np.diff(samples, axis=0), axis=1).max() for samples in (P, Q))
+    assert 20 < away <= told["bound"] + apart / 2
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("a.svg", "<svg><path d='M0 0L1 1L2 0'/></svg>"), ("a.csv", "0,0\n1,1\n2,3\n")]
+)
+def test_metres_are_for_degrees(tmp_path: Path, name: str, text: str) -> None:
+    (tmp_path / name).write_text(text)
+    result = CliRunner().invoke(main, ["reduce", str(tmp_path / name), "-t", "2km"])
+    assert result.exit_code == 2
+    assert "on the ground is for maps and tracks" in result.output
+    path = tmp_path / "far.geojson"
+    path.write_text('{"type": "LineString", "coordinates": [[400000, 5000000], [400100, 5000100], [400200, 5000000]]}')
+    result = CliRunner().invoke(main, ["reduce", str(path), "-t", "2km"])
+    assert result.exit_code == 1
+    assert "expected longitude, latitude in degrees" in result.output

@@ -21,15 +21,17 @@ IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 #: what is said where crossings are not looked at
 NOT_LINES = "--no-crossings is for maps and tracks whose lines stay lines: GeoJSON and GPX in place"
 
+NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON and GPX in place"
+
 
 @main.command(short_help="Find splines with few knots within a tolerance.")
 @job
 @click.option(
     "-t",
     "--tolerance",
-    type=terminal.tolerance,
+    type=terminal.tolerance_or_metres,
     required=True,
-    help="Largest error: a length, or as in 0.1% of the extent.",
+    help="Largest error: a length, or as in 0.1% of the extent; of maps in degrees also as in 100m, 2km on the ground.",
 )
 @click.option(
     "-d", "--degree", type=click.IntRange(1, 25), help="Raise curves of lower degree first; of shapes, that of pieces."
@@ -79,7 +81,7 @@ def reduce(
     Examples:
       knotwork reduce coast.csv --degree 3 --tolerance 0.5 --flip -o coast.svg
       knotwork reduce drawing.svg --tolerance 0.1% -o small.svg
-      knotwork reduce countries.geojson --shared-borders -t 0.05 -o small.geojson
+      knotwork reduce countries.geojson --shared-borders -t 2km -o small.geojson
       knotwork reduce coast.geojson --no-crossings -t 1% -o small.geojson
       knotwork reduce Font.otf --glyphs a,b,U+0041 -t 1 -o out.otf
       knotwork reduce Light.otf Bold.otf --together -t 1 -o masters/
@@ -97,13 +99,15 @@ def reduce(
         drawn = drawn and distance != "parametric" and degree is None and not flip
         if no_crossings and not (drawn and IN_PLACE[kind.module] == "polyline"):
             raise click.UsageError(NOT_LINES)
+        if tolerance.ground and not (drawn and IN_PLACE[kind.module] == "polyline"):
+            raise click.UsageError(NOT_GROUND)
         if kind.module == "fonts" and stays:
             if distance == "parametric" or form is not None or degree is not None or flip or precision is not None:
                 raise click.UsageError("a font in place takes --tolerance, --keep and --glyphs, of how it is reduced")
             return _font(job, file, output, tolerance, features)
         if drawn:
             how = {"effort": effort, "precision": precision, "shared": shared_borders, "no_crossings": no_crossings}
-            return _lighter(job, file, output, tolerance, even_if_longer, **how)
+            return _lighter(job, file, output, tolerance, even_if_longer, **how, ground=tolerance.ground)
         shapes = distance is None and degree is None and kind.shapes
         made = form or ("polyline" if shapes and kind.module != "svg" else "spline")
         between = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
@@ -125,8 +129,8 @@ def reduce(
         return job.one(file, output, change, tolerance, "reducing", even_if_longer=even_if_longer)
 
     if together:
-        if no_crossings:
-            raise click.UsageError(NOT_LINES)
+        if no_crossings or tolerance.ground:
+            raise click.UsageError(NOT_LINES if no_crossings else NOT_GROUND)
         _masters(job, tolerance, features)
         return
     job.each(work)
@@ -149,23 +153,27 @@ def _lighter(
     found = lighter(document, allowed, **how, even_if_longer=even_if_longer)
     data, rounded = found.document.packed(output or file, even_if_longer=even_if_longer)
     seconds = time.perf_counter() - compiling.seconds() - start
-    bound = found.bound + rounded
+    bound, metres = found.bound + rounded * found.unit, " m on the ground" if tolerance.ground else ""
     if output:
         save(output, data)
     sizes = (document.size, len(data))
     if job.as_json:
         told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed}
+        told |= {"units": "metres"} if tolerance.ground else {}
         told |= {"bound": bound, "distance": "geometric", "segments": list(found.segments), "bytes": list(sizes)}
         if found.crossings:
             told["crossings"] = {k: [getattr(c, k) for c in found.crossings] for k in ("own", "others")}
         return told
     before, after = found.segments
-    job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g} between shapes")
+    measured = metres or " between shapes"
+    job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g}{measured}")
     job.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
     if found.crossings:
         (own, others), (own_after, others_after) = found.crossings
         job.echo(f"crossings of a line with itself {own:,} → {own_after:,}, with others {others:,} → {others_after:,}")
-    job.echo(f"no point is farther than {report.upward(bound):.6g} from where it was: proven, rounding included")
+    job.echo(
+        f"no point is farther than {report.upward(bound):.6g}{metres} from where it was: proven, rounding included"
+    )
     job.echo(written_to(output, 0.0))
     return None
 

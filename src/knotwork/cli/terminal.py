@@ -137,6 +137,8 @@ class Tolerance:
 
     value: float
     relative: bool
+    #: whether it is in metres on the ground instead
+    ground: bool = False
 
     def of(self, splines: Sequence[Spline]) -> float:
         """Return the length, if need be as a part of the extent of all splines together."""
@@ -157,6 +159,14 @@ def tolerance(text: str) -> Tolerance:
         raise click.BadParameter(f"{text!r}; expected a length of at least 0 such as 0.5, or a percentage such as 0.1%")
     relative = text.endswith("%")
     return Tolerance(number / 100 if relative else number, relative)
+
+
+def tolerance_or_metres(text: str) -> Tolerance:
+    """Return a tolerance, which may also be a length on the ground: 100m, 2km."""
+    for unit, metres in (("km", 1000.0), ("m", 1.0)):
+        if text.endswith(unit):
+            return Tolerance(tolerance(text.removesuffix(unit)).value * metres, False, ground=True)
+    return tolerance(text)
 
 
 def knots(text: str) -> list[float]:

@@ -13,6 +13,7 @@ from knotwork.errors import ParameterError
 from knotwork.files.bent import Curve, bent
 from knotwork.files.borders import Arcs
 from knotwork.files.document import Document
+from knotwork.files.ground import MOST, in_degrees, in_metres
 from knotwork.files.lines import DIGITS, Lines, digits_for, number, paced
 from knotwork.files.svg.inplace import Drawing
 from knotwork.files.uncrossed import Crossings, Reduce, apart, count_crossings, uncrossed
@@ -38,6 +39,8 @@ class Lighter(NamedTuple):
     bound: float
     #: how often lines cross themselves and each other before and after, as they are written; None of curves
     crossings: tuple[Crossings, Crossings] | None = None
+    #: what the bound counts for a unit of the coordinates
+    unit: float = 1.0
 
 
 def lighter(
@@ -50,6 +53,7 @@ def lighter(
     shared: bool = False,
     no_crossings: bool = False,
     even_if_longer: bool = False,
+    ground: bool = False,
 ) -> Lighter:
     """Return a drawing whose paths have few segments, each within a distance of its shape.
 
@@ -73,29 +77,34 @@ def lighter(
         Whether polylines cross themselves and each other, as they are written, only where they did: `uncrossed`.
     even_if_longer : bool
         Whether lines are replaced where their text gets no shorter.
+    ground : bool
+        Whether the tolerance, and the bound, are in metres on the ground: of maps and tracks in degrees.
 
     Raises
     ------
     ParameterError
         If the tolerance is not positive and finite, a spline is no plane curve, or crossings are to be avoided in a
-        file that does not hold polylines alone.
+        file that does not hold polylines alone, or metres are given for one that does not hold degrees.
     """
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
     places, content = document.places, document.content
-    wanted = _Wanted(effort, shared, no_crossings, even_if_longer)
+    wanted = _Wanted(effort, shared, no_crossings, even_if_longer, ground)
     if no_crossings and not isinstance(content, Lines):
         raise ParameterError(f"no_crossings given for {document.path}; expected a map or a track: GeoJSON or GPX")
+    if ground and not all(place.units == "degrees" for place in places):
+        raise ParameterError(f"metres on the ground given for {document.path}; expected a map or a track in degrees")
+    scales = [MOST if ground else place.scale for place in places]
     free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
-    accuracy = {i: grid or ROUNDED * tolerance / places[i].scale for i in free}
+    accuracy = {i: grid or ROUNDED * tolerance / scales[i] for i in free}
     arcs = content.arcs if isinstance(content, Drawing) else {}
     changed: dict[int, Spline] = {}
     moved: dict[int, float] = {}
-    for scale in sorted({places[i].scale for i in free}):
-        alike = [i for i in free if places[i].scale == scale]
+    for scale in sorted({scales[i] for i in free}):
+        alike = [i for i in free if scales[i] == scale]
         allowed = (1 - min(accuracy[alike[0]] * scale / tolerance, 0.5)) * tolerance / scale
         straight = [i for i in alike if places[i].straight]
         for i, (line, bound) in zip(straight, _together(document, straight, allowed, accuracy, wanted), strict=True):
@@ -117,7 +126,8 @@ def lighter(
         crossings = count_crossings(document.splines), count_crossings(after.splines)
     inside = sum(b - a - 1 for i in free for a, b in arcs.get(i, ()))  # pieces of an arc are one segment
     segments = [sum(len(each.splines[i].space.breaks) - 1 for i in free) - inside for each in (document, after)]
-    return Lighter(after, (segments[0], segments[1]), max(moved.values(), default=0.0), crossings)
+    worst = max(moved.values(), default=0.0)
+    return Lighter(after, (segments[0], segments[1]), worst, crossings, MOST if ground else 1.0)
 
 
 class _Wanted(NamedTuple):
@@ -127,6 +137,7 @@ class _Wanted(NamedTuple):
     shared: bool
     no_crossings: bool
     even_if_longer: bool
+    ground: bool
 
 
 def _together(
@@ -136,7 +147,8 @@ def _together(
     content, lines = document.content, [document.splines[i] for i in alike]
     if not lines:
         return []
-    reduce = _polylines(wanted.effort, digits_for(accuracy[alike[0]]) if isinstance(content, Lines) else DIGITS)
+    digits = digits_for(accuracy[alike[0]]) if isinstance(content, Lines) else DIGITS
+    reduce = _polylines(wanted.effort, digits, wanted.ground)
     arcs = Arcs(lines) if wanted.shared else None
     whole: set[int] = set()
 
@@ -155,16 +167,25 @@ def _together(
         whole |= more  # what is not written anew stays as it is, and so does what others share with it
 
 
-def _polylines(effort: str, digits: int) -> Reduce:
-    """Return what reduces polylines, and remembers them: to few corners, new ones of so many digits."""
+def _polylines(effort: str, digits: int, ground: bool) -> Reduce:
+    """Return what reduces polylines, and remembers them: to few corners, new ones of so many digits.
+
+    On the ground, a degree counts for as many metres as it has at most.
+    """
     known: dict[tuple[bytes, bytes, float], tuple[Spline, float]] = {}
 
     def reduce(spline: Spline, tolerance: float) -> tuple[Spline, float]:
         key = (spline.coefficients.tobytes(), spline.space.breaks.tobytes(), tolerance)
         if key not in known:
-            reduction = reduce_one(spline, tolerance, distance="geometric", form="polyline", effort=effort)
-            line, moved = _rounded(paced(reduction, spline), spline, digits)
-            known[key] = line, float(reduction.bound) + moved
+            given, scale, unit = spline, np.ones(2), MOST if ground else 1.0
+            if ground:
+                given, scale = in_metres(spline, tolerance * MOST)
+            reduction = reduce_one(given, tolerance * unit, distance="geometric", form="polyline", effort=effort)
+            line = paced(reduction, given)
+            line, moved = _rounded(in_degrees(line, spline, scale) if ground else line, spline, digits)
+            if ground:  # to metres and back
+                moved += 2**-50 * float(np.abs(spline.coefficients).max())
+            known[key] = line, float(reduction.bound) / unit * (1 + 2**-50) + moved
         return known[key]
 
     return reduce
