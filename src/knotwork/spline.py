@@ -63,9 +63,9 @@ class Spline(Frozen):
     def _check(self, spaces: tuple[SplineSpace, ...], coefficients: Any, rational: bool, what: str) -> None:
         """Fill in coefficients after checking that they fit the spaces; `what` the user calls them."""
         given = numbers(coefficients, what, PointError, copy=True)
-        counts = [space.dimension for space in spaces]
+        counts = tuple([space.dimension for space in spaces])
         k = len(counts)
-        if not k <= given.ndim <= k + 1 or [*given.shape[:k]] != counts:
+        if not k <= given.ndim <= k + 1 or given.shape[:k] != counts:
             wanted = ", ".join(map(str, counts))
             raise PointError(
                 f"{what} of shape {given.shape} given; the spaces of dimension {wanted} take shape "
@@ -106,7 +106,8 @@ class Spline(Frozen):
 
     def with_axis(self, axis: int, space: SplineSpace, coefficients: Array) -> Self:
         """Return the spline with another space on one axis and coefficients to match (trusted)."""
-        spaces = (*self.spaces[:axis], space, *self.spaces[axis + 1 :])
+        spaces = self.spaces
+        spaces = (*spaces[:axis], space, *spaces[axis + 1 :]) if len(spaces) > 1 else (space,)
         return self.trusted(spaces, coefficients, self.rational)
 
     # ---- what a spline is ---------------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ def test_copies_change_no_bit(seed, monkeypatch):
     found = {}
     for longest in (0, 10**9):
         monkeypatch.setattr(refinement, "LONG", (longest, longest))
-        monkeypatch.setattr(merge, "LONG", longest)
+        monkeypatch.setattr(merge, "LONG", (longest, longest))
         found[longest] = [outcome(curve, u) for u in jobs]
         found[longest] += [[part.points.tolist() for part in kw.split(curve, u)] for u in few if a < u < b]
     assert found[0] == found[10**9]

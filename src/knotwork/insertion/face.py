@@ -55,7 +55,7 @@ def insert(spline: Spline, knots: Any, axis: int = 0, method: MethodName = "auto
     <surface of 3 × 4 numbers, degree 1 × 1>
     """
     require_spline(spline, "insert")
-    if isinstance(knots, Mapping) or _by_axis(knots, len(spline.spaces)):
+    if not isinstance(knots, float) and (isinstance(knots, Mapping) or _by_axis(knots, len(spline.spaces))):
         for each, new in spline.by_axis(knots, axis):
             spline = insert(spline, new, each, method)
         return spline

@@ -20,8 +20,9 @@ from knotwork.schemes import copy, weights
 BLOCK = 64
 #: curves of a net to which a row is applied at a time: 4 and 8 are alike, 1 or 64 take half as long again (same)
 TILE = 8
-#: rows that are copied as arrays where there are more: fewer are copied by the loop over all (measured, 2026)
-LONG = 64
+#: rows above which those far from new knots are copied as arrays: for a plain kernel; for a compiled one, whose loop
+#: over fewer takes less time than copies take to prepare (measured, 2026, 3-D)
+LONG = 16, 4096
 
 
 @kernel
@@ -154,8 +155,9 @@ def refined_blocks(U: Array, W: Array, stop: int, n: int, P: Array, lo: int, row
 
     if A == 1:  # contiguous parts either way
         a, b = _near(U, W, stop, n, lo, rows)
-        T[:a], T[b + n + 1 :] = U[lo : lo + a], U[lo + b + n + 1 - m : lo + rows + n + 1 - m]
-        out[:, :a], out[:, b:] = P[:, lo : lo + a], P[:, lo + b - m : lo + rows - m]
+        if b - a < rows:
+            T[:a], T[b + n + 1 :] = U[lo : lo + a], U[lo + b + n + 1 - m : lo + rows + n + 1 - m]
+            out[:, :a], out[:, b:] = P[:, lo : lo + a], P[:, lo + b - m : lo + rows - m]
         in_parts(lambda start, end: curve(a + start, a + end), b - a, (b - a) * B)
     else:
         merge(U, W, T, lo)
@@ -168,10 +170,13 @@ def _near(U: Array, W: Array, stop: int, n: int, lo: int, rows: int) -> tuple[in
     """Return which of the rows from `lo` on to compute: outside them there is no new knot, and points are copies."""
     if not len(W):
         return rows, rows
+    long = LONG[refine_curve.loaded]
+    if rows <= long:
+        return 0, rows
     first, last = U[:stop].searchsorted(W[[0, -1]], "right").tolist()
     a = min(max(first - n - 1 - lo, 0), rows)
     b = min(max(last + len(W) - lo, a), rows)
-    return (a, b) if a + rows - b > LONG else (0, rows)
+    return (a, b) if a + rows - b > long else (0, rows)
 
 
 def rows_of_matrix(U: Array, W: Array, stop: int, n: int, lo: int, count: int) -> Rows:

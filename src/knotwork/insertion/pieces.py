@@ -60,15 +60,17 @@ def split(spline: Spline, u: Any, axis: int = 0) -> tuple[Spline, Spline]:
     x = _inside(space, u)
     if not a < x < b:
         raise ParameterError(f"split at {u}: expected a parameter strictly inside the domain [{a}, {b}]")
-    opened, P = _opened(space, spline.coefficients, axis)
-    n, everything = space.degree, (0, len(opened.knots))
-    full, some = ((a, x, b), _range(opened, a, b)) if space.periodic else ((x,), everything)
-    T, W = _with_full(opened, as_blocks(P, axis), full, *some)
-    k = int(T.searchsorted(x))
-    return (
-        spline.with_axis(axis, SplineSpace.trusted(n, T[: k + n + 1].copy()), along(W[:, :k].copy(), P, axis)),
-        spline.with_axis(axis, SplineSpace.trusted(n, T[k:].copy()), along(W[:, k:].copy(), P, axis)),
-    )
+    if space.periodic:
+        spline = _restrict(spline, axis, a, b)
+    t, n, P = spline.spaces[axis].knots, space.degree, as_blocks(spline.coefficients, axis)
+    N, k = P.shape[1], int(t.searchsorted(x))
+    new = np.full(k + n + 1 - t.searchsorted(x, "right"), x, t.dtype)
+
+    def part(first: int, rows: int) -> Spline:
+        T, W = refined_blocks(t, new, N, n, P, first, rows)
+        return spline.with_axis(axis, SplineSpace.trusted(n, T), along(W, spline.coefficients, axis))
+
+    return part(0, k), part(k, N + len(new) - k)
 
 
 def trim(spline: Spline, a: Any, b: Any = None, axis: int = 0) -> Spline:

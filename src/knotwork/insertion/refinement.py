@@ -7,16 +7,12 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import KnotError
-from knotwork.insertion.merge import refined_blocks, rows_of_matrix
+from knotwork.insertion.merge import LONG, refined_blocks, rows_of_matrix
 from knotwork.insertion.single_knot import one_knot
 from knotwork.knots import with_multiplicities
 from knotwork.linear.banded import Banded, along, as_blocks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
-
-#: points above which those far from a new knot are copied as arrays: for a plain kernel; for a compiled one, whose loop
-#: over fewer takes less time than copies take to prepare (measured, 2026, 3-D)
-LONG = 16, 4096
 
 
 def insert_one(spline: Spline, u: float, axis: int) -> Spline:
@@ -30,13 +26,15 @@ def insert_one(spline: Spline, u: float, axis: int) -> Spline:
     blocks = as_blocks(P, axis)
     A, _, B = blocks.shape
     T, S = np.empty(N + n + 2), np.empty((A, N + 1, B), P.dtype)
-    lo, hi = 0, N
-    if A == 1 and LONG[one_knot.loaded] < N:
+    D = extent(B)
+    if A > 1 or LONG[one_knot.loaded] >= N:
+        m = one_knot(t, blocks, u, T, S, D)
+    else:
         q = min(max(int(t.searchsorted(u, "right")) - 1, n), N - 1)
         lo, hi = max(q - n - 1, 0), min(q + n + 2, N)
         S[:, :lo], S[:, hi + 1 :] = blocks[:, :lo], blocks[:, hi:]
         T[:lo], T[hi + n + 2 :] = t[:lo], t[hi + n + 1 :]
-    m = one_knot(t[lo : hi + n + 1], blocks[:, lo:hi], u, T[lo : hi + n + 2], S[:, lo : hi + 1], extent(B))
+        m = one_knot(t[lo : hi + n + 1], blocks[:, lo:hi], u, T[lo : hi + n + 2], S[:, lo : hi + 1], D)
     if m > n:
         raise KnotError(f"knot {u} has multiplicity {m + 1}; degree {n} allows at most {n + 1}")
     return spline.with_axis(axis, SplineSpace.trusted(n, T), along(S, P, axis))

@@ -87,12 +87,17 @@ def pack(first, last, E, limit, wraps):
 
 def as_blocks(P: Array, axis: int) -> Array:
     """View C-ordered coefficients as (A, n, B) with the axis in question in the middle."""
+    if P.ndim == 2 and not axis:  # the control points of a curve
+        return P[None]
     shape = P.shape
     return P.reshape(math.prod(shape[:axis]), shape[axis], math.prod(shape[axis + 1 :]))
 
 
 def along(blocks: Array, like: Array, axis: int) -> Array:
     """Return blocks (A, m, B) as coefficients of the shape of `like`, with m along the axis."""
+    if like.ndim == 2 and not axis:
+        curve: Array = blocks[0]
+        return curve
     shape = like.shape
     return blocks.reshape(shape[:axis] + blocks.shape[1:2] + shape[axis + 1 :])
 
