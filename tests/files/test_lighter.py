@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.spatial import cKDTree
 
 import knotwork as kw
+from knotwork.cli import main
 from knotwork.errors import FileError, ParameterError
 from knotwork.files.lighter import lighter
 from knotwork.geometry.sampling import even_steps
@@ -172,3 +174,19 @@ def test_cubics_that_are_quadratics_are_written_so(tmp_path: Path) -> None:
     data, bound = kw.open(path).replace(0, kw.elevate(given)).bytes()
     assert b'd="M0 0Q30 60 60 0"' in data
     assert bound < 1e-12
+
+
+def test_straight_runs_stay_straight_if_asked(tmp_path: Path) -> None:
+    path, out = tmp_path / "a.svg", tmp_path / "b.svg"
+    wave = " ".join(f"L{60 + 0.4 * x:.3f} {10 + 0.0006 * x * x:.6f}" for x in range(1, 100))
+    path.write_text(f'<svg><path d="M0 10L20 10L40 10L60 10{wave}"/></svg>')
+    words = ["reduce", str(path), "-t", "0.5", "-o", str(out)]
+    seen = []
+    for more in ([], ["--keep", "lines"]):
+        result = CliRunner().invoke(main, [*words, *more])
+        assert result.exit_code == 0, result.output
+        seen.append(bool(re.search('d="M0 10[Hh]6[0-9.]*', out.read_text())))
+    assert seen == [False, True]
+    refused = CliRunner().invoke(main, [*words, "--keep", "extrema"])
+    assert refused.exit_code == 2
+    assert "--keep takes corners" in refused.output

@@ -146,3 +146,26 @@ def test_only_for_lines(tmp_path):
     done = CliRunner().invoke(main, ["reduce", str(path), "-t", "0.1", "--no-crossings"])
     assert done.exit_code == 2
     assert "--no-crossings" in done.output
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.json"])
+def test_tables_cross_nowhere_anew(tmp_path, name):
+    coast, island = bay()
+    path = tmp_path / name
+    path.write_text("\n\n".join("\n".join(f"{x},{y}" for x, y in [*ring, ring[0]]) for ring in (coast, island)) + "\n")
+    if name == "a.json":
+        path.rename(tmp_path / "a.csv")
+        kw.write(path, kw.read(tmp_path / "a.csv"))
+    words = ["reduce", str(path), "-t", "0.04", "--form", "polyline", "-o", str(tmp_path / f"b{path.suffix}")]
+    counts = []
+    for more in ([], ["--no-crossings"]):
+        done = CliRunner().invoke(main, [*words, *more])
+        assert done.exit_code == 0, done.output
+        pairs = crossing_pairs([corners(s, "a line")[0] for s in kw.read(tmp_path / f"b{path.suffix}")])
+        counts.append(len(pairs))
+    assert counts[0] > 0 == counts[1]
+    assert "crossings of a line with itself 0 → 0, with others 0 → 0" in done.output
+    done = CliRunner().invoke(main, [*words[:-2], "--no-crossings", "--json"])
+    told = json.loads(done.output)
+    assert told["crossings"] == {"own": [0, 0], "others": [0, 0]}
+    assert max(row["bound"] for row in told["splines"]) <= 0.04

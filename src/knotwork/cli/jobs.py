@@ -6,7 +6,7 @@ import functools
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import click
 
@@ -20,6 +20,18 @@ from knotwork.errors import KnotworkError
 #: takes a spline, the tolerance if there is one, and a function to tell progress to if it is slow; returns the spline
 #: changed (or several), the bound, and perhaps more to report
 Change = Callable[..., tuple[Any, ...]]
+
+
+class Together(Protocol):
+    """What was found for all splines of a file together."""
+
+    #: what is said of it, for a person and in JSON
+    told: str
+    as_json: dict[str, Any]
+
+    def __call__(self, spline: kw.Spline, *rest: Any) -> tuple[Any, ...]:
+        """Return one of them changed, as a `Change` does."""
+        ...
 
 
 class Job(NamedTuple):
@@ -66,12 +78,16 @@ class Job(NamedTuple):
         self,
         file: Path,
         output: Path | None,
-        change: Change,
+        change: Change | None,
         tolerance: Tolerance | None,
         working: str | None,
         even_if_longer: bool = True,
+        together: Callable[..., Together] | None = None,
     ) -> dict[str, Any] | None:
-        """Change the splines of one file, write, and say so; return what is to be said in JSON."""
+        """Change the splines of one file, write, and say so; return what is to be said in JSON.
+
+        What changes them `together` is made of all of them and the tolerance.
+        """
         document = self.reading.document(file) if output and self._stays(file, output) else None
         splines = list(document.splines) if document else self.reading.splines(file)
         for i in self.only:
@@ -83,13 +99,16 @@ class Job(NamedTuple):
         progress = Progress(working or "working", sum(splines[i].coefficients.size for i in chosen))
         rows: list[dict[str, Any]] = []
         changed: list[Any] = list(splines)
+        group = together([splines[i] for i in chosen], *allowed) if together else None
+        each = group or change
+        assert each is not None
         try:
             for i in chosen:
                 size = splines[i].coefficients.size
                 start = time.perf_counter() - compiling.seconds()
                 tell = [lambda part, size=size: progress.update(part * size)] if working else []
                 try:
-                    changed[i], bound, *more = change(splines[i], *allowed, *tell)
+                    changed[i], bound, *more = each(splines[i], *allowed, *tell)
                 except KnotworkError as exc:
                     raise Failure(f"{file}: spline {i}: {exc}") from exc
                 seconds = time.perf_counter() - compiling.seconds() - start
@@ -101,11 +120,14 @@ class Job(NamedTuple):
         if self.as_json:
             told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "splines": rows}
             told |= {"tolerance": allowed[0]} if allowed else {}
+            told |= group.as_json if group else {}
             return told | ({"written_bound": written} if written is not None else {})
         limit = f", tolerance {allowed[0]:.6g}" if allowed else ""
         self.echo(f"{file}: {report.counted(len(rows), 'spline')}{limit}\n\n{report.comparison(rows)}\n")
         if rows and "how" in rows[0]:
             self.echo(report.conversions(rows) + "\n")
+        if group:
+            self.echo(group.told)
         self.echo(written_to(output, written or 0.0))
         return None
 

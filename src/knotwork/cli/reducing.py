@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,11 +17,14 @@ from knotwork.cli.program import flip, main
 from knotwork.cli.streams import STREAM, paired, save
 from knotwork.cli.terminal import Tolerance, compiling
 
+if TYPE_CHECKING:
+    from knotwork.files.uncrossed import Crossings
+
 #: formats that are written in place with few segments, and what these are
 IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 #: what is said where crossings are not looked at
-NOT_LINES = "--no-crossings is for maps and tracks whose lines stay lines: GeoJSON and GPX in place"
-
+NOT_LINES = "--no-crossings is for maps, tracks and tables whose lines stay lines"
+#: and where there are no degrees
 NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON and GPX in place"
 
 
@@ -48,7 +52,7 @@ NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON 
 @click.option(
     "--no-crossings",
     is_flag=True,
-    help="Lines of a map or a track cross themselves and each other only where they did.",
+    help="Lines of a map, a track or a table cross themselves and each other only where they did.",
 )
 @click.option("--together", is_flag=True, help="Files are masters of one family of fonts: points stay the same in all.")
 @flip
@@ -97,20 +101,26 @@ def reduce(
         stays = output is None or output == STREAM or format_of(output) is kind
         drawn = stays and kind.module in IN_PLACE and form in (None, IN_PLACE[kind.module])
         drawn = drawn and distance != "parametric" and degree is None and not flip
-        if no_crossings and not (drawn and IN_PLACE[kind.module] == "polyline"):
-            raise click.UsageError(NOT_LINES)
         if tolerance.ground and not (drawn and IN_PLACE[kind.module] == "polyline"):
             raise click.UsageError(NOT_GROUND)
         if kind.module == "fonts" and stays:
             if distance == "parametric" or form is not None or degree is not None or flip or precision is not None:
                 raise click.UsageError("a font in place takes --tolerance, --keep and --glyphs, of how it is reduced")
             return _font(job, file, output, tolerance, features)
-        if drawn:
-            how = {"effort": effort, "precision": precision, "shared": shared_borders, "no_crossings": no_crossings}
-            return _lighter(job, file, output, tolerance, even_if_longer, **how, ground=tolerance.ground)
+        if drawn and set(features) - ({"corners", "lines"} if kind.module == "svg" else set()):
+            raise click.UsageError("of drawings, --keep takes corners, which stay anyway, and lines; of maps nothing")
+        if drawn and not (no_crossings and IN_PLACE[kind.module] != "polyline"):
+            how = {"effort": effort, "precision": precision, "lines": "lines" in features}
+            how |= {"shared": shared_borders, "no_crossings": no_crossings, "ground": tolerance.ground}
+            return _lighter(job, file, output, tolerance, even_if_longer, **how)
         shapes = distance is None and degree is None and kind.shapes
         made = form or ("polyline" if shapes and kind.module != "svg" else "spline")
         between = distance or ("geometric" if shapes or form in ("bezier", "polyline") else "parametric")
+        if no_crossings:
+            if kind.module in ("svg", "fonts") or (made, between, flip) != ("polyline", "geometric", False) or features:
+                raise click.UsageError(NOT_LINES)
+            together = functools.partial(_Uncrossed, effort=effort)
+            return job.one(file, output, None, tolerance, None, even_if_longer=even_if_longer, together=together)
 
         def change(spline: kw.Spline, allowed: float, progress: Callable[[float], None]) -> tuple[kw.Spline, Any]:
             shape = between == "geometric"
@@ -134,6 +144,34 @@ def reduce(
         _masters(job, tolerance, features)
         return
     job.each(work)
+
+
+def crossings_told(before: Crossings, after: Crossings) -> str:
+    """Return a text that tells how often lines cross before and after."""
+    (own, others), (own_after, others_after) = before, after
+    return f"crossings of a line with itself {own:,} → {own_after:,}, with others {others:,} → {others_after:,}"
+
+
+def crossings_counted(before: Crossings, after: Crossings) -> dict[str, list[int]]:
+    """Return the same, in JSON."""
+    return {k: [getattr(c, k) for c in (before, after)] for k in ("own", "others")}
+
+
+class _Uncrossed:
+    """Polylines reduced together: they cross nowhere where they did not."""
+
+    def __init__(self, splines: list[kw.Spline], allowed: float, effort: str) -> None:
+        from knotwork.files.lighter import polylines
+        from knotwork.files.uncrossed import count_crossings, uncrossed
+
+        found = uncrossed(splines, allowed, polylines(effort))
+        self.found = {id(spline): each for spline, each in zip(splines, found, strict=True)}
+        crossings = count_crossings(splines), count_crossings([spline for spline, _ in found])
+        self.told, self.as_json = crossings_told(*crossings), {"crossings": crossings_counted(*crossings)}
+
+    def __call__(self, spline: kw.Spline, *_: Any) -> tuple[kw.Spline, float]:
+        """Return what became of one of them."""
+        return self.found[id(spline)]
 
 
 def _lighter(
@@ -162,15 +200,14 @@ def _lighter(
         told |= {"units": "metres"} if tolerance.ground else {}
         told |= {"bound": bound, "distance": "geometric", "segments": list(found.segments), "bytes": list(sizes)}
         if found.crossings:
-            told["crossings"] = {k: [getattr(c, k) for c in found.crossings] for k in ("own", "others")}
+            told["crossings"] = crossings_counted(*found.crossings)
         return told
     before, after = found.segments
     measured = metres or " between shapes"
     job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g}{measured}")
     job.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
     if found.crossings:
-        (own, others), (own_after, others_after) = found.crossings
-        job.echo(f"crossings of a line with itself {own:,} → {own_after:,}, with others {others:,} → {others_after:,}")
+        job.echo(crossings_told(*found.crossings))
     job.echo(
         f"no point is farther than {report.upward(bound):.6g}{metres} from where it was: proven, rounding included"
     )

@@ -33,7 +33,9 @@ class _Run(NamedTuple):
     free: bool
 
 
-def bent(curves: Sequence[Curve], tolerance: float, *, effort: str, angle: float | None) -> list[Bent | None]:
+def bent(
+    curves: Sequence[Curve], tolerance: float, *, effort: str, angle: float | None, lines: bool
+) -> list[Bent | None]:
     """Return each curve in few pieces within a distance of its shape; None for one that stays as it is.
 
     A closed one may begin elsewhere. For the rest see `reduce_bezier`.
@@ -45,7 +47,7 @@ def bent(curves: Sequence[Curve], tolerance: float, *, effort: str, angle: float
     at = np.cumsum([0, *(len(run.nets) for run in free)])
     closed = [run.closed for run in free]
     nets = np.concatenate([run.nets for run in free])
-    found = reduce_bezier(nets, at, tolerance, closed=closed, effort=effort, angle=angle)
+    found = reduce_bezier(nets, at, tolerance, closed=closed, effort=effort, angle=angle, lines=lines)
     parts = (Bent(found.nets[a:b], float(d)) for a, b, d in zip(found.at, found.at[1:], found.bound, strict=False))
     result: list[Bent | None] = []
     for each in runs:

@@ -49,6 +49,7 @@ def lighter(
     *,
     effort: str = "normal",
     corners: bool = True,
+    lines: bool = False,
     precision: int | None = None,
     shared: bool = False,
     no_crossings: bool = False,
@@ -69,6 +70,8 @@ def lighter(
         How long to search.
     corners : bool
         Whether joints where a curve turns by more than 10 degrees stay exactly.
+    lines : bool
+        Whether straight runs longer than four tolerances stay straight between the ends they have.
     precision : int, optional
         Digits after the point, instead of as many as the tolerance needs; what they move counts in the bound.
     shared : bool
@@ -111,7 +114,7 @@ def lighter(
             changed[i], moved[i] = line, bound * scale
         curved = [i for i in alike if not places[i].straight]
         given = [Curve(_cubics(document, i), places[i].closed, arcs.get(i, ())) for i in curved]
-        found = bent(given, allowed, effort=effort, angle=CORNER if corners else None)
+        found = bent(given, allowed, effort=effort, angle=CORNER if corners else None, lines=lines)
         for i, new in zip(curved, found, strict=True):
             if new:
                 t, closed = (0.0, float(len(new.nets))), places[i].closed
@@ -148,7 +151,7 @@ def _together(
     if not lines:
         return []
     digits = digits_for(accuracy[alike[0]]) if isinstance(content, Lines) else DIGITS
-    reduce = _polylines(wanted.effort, digits, wanted.ground)
+    reduce = polylines(wanted.effort, digits, wanted.ground)
     arcs = Arcs(lines) if wanted.shared else None
     whole: set[int] = set()
 
@@ -167,7 +170,7 @@ def _together(
         whole |= more  # what is not written anew stays as it is, and so does what others share with it
 
 
-def _polylines(effort: str, digits: int, ground: bool) -> Reduce:
+def polylines(effort: str, digits: int = DIGITS, ground: bool = False) -> Reduce:
     """Return what reduces polylines, and remembers them: to few corners, new ones of so many digits.
 
     On the ground, a degree counts for as many metres as it has at most.

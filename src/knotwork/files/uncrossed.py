@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.errors import ParameterError
 from knotwork.files.lines import corners, polyline
 from knotwork.geometry.edge_crossings import edge_crossings
 from knotwork.geometry.lengths import increasing
@@ -63,6 +64,9 @@ def uncrossed(
     whole : collection of int
         Which ones stay as they are.
     """
+    for i, spline in enumerate(splines):
+        if spline.dim != 2:
+            raise ParameterError(f"spline {i} has points in {spline.dim}-D; crossings are those of lines in the plane")
     lines = [_Line(spline, i in whole) for i, spline in enumerate(splines)]
     given = edge_crossings([line.points for line in lines]).tolist()
     found = [line.reduced(tolerance, reduce) for line in lines]
