@@ -307,6 +307,12 @@ def test_plain_and_compiled_agree_on_geometry(both):
     kw.flatten(kw.surface(rng.standard_normal((5, 5, 3))), 0.5)
     kw.closest(kw.curve(rng.standard_normal((12, 3))), rng.standard_normal((20, 3)))
     kw.closest(kw.surface(rng.standard_normal((4, 5, 3)), (2, 3)), rng.standard_normal((4, 3)))
+    loop = kw.curve([[0, 0], [3, 2], [-2, 2], [1, 0]])
+    kw.intersect(loop)
+    kw.intersect(loop, kw.curve([[0, 0.5], [1, 0.7]], 1))
+    hills = kw.surface(np.stack([*np.meshgrid(range(4), range(3), indexing="ij"), rng.random((4, 3))], axis=-1), (2, 1))
+    kw.intersect(kw.curve([[0.5, 0.5, 0], [1, 1, 1], [2, 1.5, 0]], 2), hills)
+    kw.intersect(kw.curve([[0, 1], [1, -1], [2, 1]], 2), kw.curve([[0, 0], [2, 0]], 1))
 
 
 #: what stands for kernels that are bound by name, and texts that call them: these run as variants alone

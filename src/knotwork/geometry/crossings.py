@@ -13,8 +13,9 @@ from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.exact_crossings import decided
 from knotwork.geometry.gathering import Crossings, closed, gathered
 from knotwork.geometry.lines import Line, Plane, on_plane, segment
-from knotwork.geometry.meetings import APART, NEXT, SAME, TOGETHER, Meetings, Pairs, Stretch, search
+from knotwork.geometry.meetings import Pairs, search
 from knotwork.geometry.neighbours import candidates
+from knotwork.geometry.proofs import APART, NEXT, SAME
 from knotwork.geometry.sides import Side, Whole, scale, whole
 from knotwork.spline import Spline
 
@@ -84,8 +85,7 @@ def intersect(a: Spline, b: Spline | Line | Plane | None = None, tolerance: floa
     near = math.ldexp(float(tolerance), -shift)
     first = whole(both[0], shift)
     second = first if other is None else whole(both[1], shift)
-    batches = _itself(first, near) if other is None else _of_two(first.side, second.side, near)
-    found, stretches = _found(batches, near)
+    found, stretches = search(_itself(first, near) if other is None else _of_two(first.side, second.side, near), near)
     return gathered(decided(found, first, second, near), stretches, first, second, shift, other is None)
 
 
@@ -132,7 +132,7 @@ def _boxes(side: Side, tolerance: float) -> tuple[Array, Array]:
 def _of_two(a: Side, b: Side, tolerance: float) -> Pairs:
     """Return the pairs of pieces whose boxes meet."""
     i, j = candidates(*_boxes(a, tolerance), _boxes(b, tolerance))
-    return Pairs(a.taken(i), b.taken(j), np.full(len(i), APART), np.arange(len(i)))
+    return Pairs(a.taken(i), b.taken(j), np.full(len(i), APART))
 
 
 def _itself(curve: Whole, tolerance: float) -> Pairs:
@@ -143,8 +143,8 @@ def _itself(curve: Whole, tolerance: float) -> Pairs:
     side = side.taken(size > tolerance + 4 * side.error)
     ring = closed(curve, 0)
     while ring and 0 < len(side.piece) < 3:  # so that neighbours have one point in common
-        left, right = side.halved()
-        side = Side(*(np.stack(x, axis=1).reshape(-1, *x[0].shape[1:]) for x in zip(left, right, strict=True)))
+        parts = [side.within(side.low * 0 + x, side.low * 0 + x + 0.5) for x in (0.0, 0.5)]
+        side = Side(*(np.stack(x, axis=1).reshape(-1, *x[0].shape[1:]) for x in zip(*parts, strict=True)))
     i, j = candidates(*_boxes(side, tolerance), None)
     count = len(side.piece)
     kind = np.where(i == j, SAME, APART)
@@ -157,15 +157,4 @@ def _itself(curve: Whole, tolerance: float) -> Pairs:
         last = (i == 0) & (j == count - 1) & shared[j]
         kind[last] = NEXT
         i, j = np.where(last, j, i), np.where(last, i, j)
-    return Pairs(side.taken(i), side.taken(j), kind, np.arange(len(i)))
-
-
-def _found(pairs: Pairs, tolerance: float) -> tuple[Meetings, list[Stretch]]:
-    """Return what is found in all pairs, so many at a time that they have room."""
-    found, stretches = [], list[Stretch]()
-    for start in range(0, max(len(pairs.kind), 1), TOGETHER):
-        some = pairs.taken(np.arange(start, min(start + TOGETHER, len(pairs.kind))))
-        here, common = search(some._replace(given=np.arange(len(some.kind))), tolerance)
-        found.append(here)
-        stretches += common
-    return Meetings.joined(found), stretches
+    return Pairs(side.taken(i), side.taken(j), kind)

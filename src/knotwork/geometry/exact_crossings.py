@@ -11,9 +11,11 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.geometry.exact_roots import simplest
 from knotwork.geometry.exactly import exact_net
-from knotwork.geometry.meetings import Meetings, crosses
+from knotwork.geometry.meetings import Meetings
+from knotwork.geometry.nets import left_inverse
+from knotwork.geometry.proofs import Room, crosses
 from knotwork.geometry.resultants import met
-from knotwork.geometry.sides import Whole, left_inverse, part_of, values
+from knotwork.geometry.sides import Whole, part_of, values
 
 #: meetings that are decided at most: each takes some hundredths of a second
 DECIDED = 256
@@ -33,11 +35,15 @@ def decided(found: Meetings, first: Whole, second: Whole, tolerance: float) -> M
     """
     exact = first.exact is not None
     found = _together(found)
-    kept: list[tuple[int, Box, int]] = []
+    kept: list[tuple[int, Any, int]] = []
     budget = DECIDED
-    for k, (i, j, m) in enumerate(zip(found.i.tolist(), found.j.tolist(), found.multiplicity.tolist(), strict=True)):
-        box: Box = tuple((Fraction(x), Fraction(y)) for x, y in found.box[k].tolist())
-        places: list[tuple[Box, int]] | None = [(box, m)] if m and not exact else None
+    told = zip(found.i.tolist(), found.j.tolist(), found.multiplicity.tolist(), found.box.tolist(), strict=True)
+    for k, (i, j, m, ends) in enumerate(told):
+        if m and not exact:
+            kept.append((k, ends, m))
+            continue
+        box: Box = tuple((Fraction(x), Fraction(y)) for x, y in ends)
+        places: list[tuple[Box, int]] | None = None
         if m and first.exact is not None and second.exact is not None:
             places = _bracket(first.exact[i], second.exact[j], found.at[k].tolist(), box)
         elif not m and budget and len(box) == 2 and first.spline.dim == 2 and not (i == j and first is second):
@@ -49,13 +55,12 @@ def decided(found: Meetings, first: Whole, second: Whole, tolerance: float) -> M
         if places is None or (tolerance and not places):
             places = [(box, 0)]
         kept += [(k, *place) for place in places]
-    which = np.array([k for k, _, _ in kept], int)
-    result = found.taken(which)
-    boxes = np.array([box for _, box, _ in kept], object).reshape(len(kept), *found.box.shape[1:])
-    at = boxes.mean(axis=2) if exact and len(kept) else result.at
+    result = found.taken(np.array([k for k, _, _ in kept], int))
+    result = result._replace(multiplicity=np.array([m for _, _, m in kept], int))
     if not exact:
-        boxes = result.box
-    return result._replace(box=boxes, at=at, multiplicity=np.array([m for _, _, m in kept], int))
+        return result
+    boxes = np.array([box for _, box, _ in kept], object).reshape(len(kept), *found.box.shape[1:])
+    return result._replace(box=boxes, at=boxes.mean(axis=2) if kept else result.at)
 
 
 def _net(side: Whole, piece: int) -> Array:
@@ -101,15 +106,20 @@ def _bracket(a: Array, b: Array, start: Sequence[float], box: Box) -> list[tuple
     x = np.array([[Fraction(t) for t in start]], object)
     floats = np.array([start], float)
     (_, da), (_, db) = (values(c.astype(np.float64), y) for c, y in ((a, floats[:, :p]), (b, floats[:, p:])))
-    M = np.vectorize(Fraction, otypes=[object])(left_inverse(np.concatenate([da, -db], axis=2)))
+    nets = [c[0].reshape(c.shape[1], -1, c.shape[-1]) for c in (a, b)]
+    room, rough = Room.of(nets[0], nets[1], object), Room.of(nets[0], nets[1])
+    if not left_inverse(np.concatenate([da, -db], axis=2)[0], rough.M, rough.basis, rough.R):
+        return [(box, 1)]
+    M = room.M[:] = np.vectorize(Fraction, otypes=[object])(rough.M)
     for _ in range(STEPS):
         gap = values(a, x[:, :p])[0] - values(b, x[:, p:])[0]
         x = x - (M * gap[:, None]).sum(axis=2)
         x = np.array([[Fraction(round(t * LAST), LAST) for t in x[0]]], object)
-    nothing = np.zeros((1, x.shape[1]), object)
+    room.x[:], nothing = x[0], np.zeros(x.shape[1], object)
     for width in WIDTHS:
         h = np.full(x.shape, width, object)
-        if not crosses(a, b, x, h, M, nothing)[0]:
+        room.h[:] = h[0]
+        if not crosses(*nets, nothing, room):
             break
         ends = list(zip((x - h)[0].tolist(), (x + h)[0].tolist(), strict=True))
         if any(high < 0 or low > 1 for low, high in ends):
@@ -120,7 +130,7 @@ def _bracket(a: Array, b: Array, start: Sequence[float], box: Box) -> list[tuple
         if _apart(a, b, x, h):
             return []
         if all(low >= 0 and high <= 1 for low, high in ends):
-            return [(tuple(ends), 1 if M.shape[1] == M.shape[2] else 0)]
+            return [(tuple(ends), 1 if M.shape[0] == M.shape[1] else 0)]
     return [(box, 1)]
 
 

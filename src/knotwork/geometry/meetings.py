@@ -11,25 +11,26 @@ when parts are as short as rounding: such a meeting is reported as it is, undeci
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.kernel import kernel
+from knotwork.geometry.nets import halve, parameters, points_of
 from knotwork.geometry.pieces import UNIT
-from knotwork.geometry.sides import Side, differences, left_inverse, part_of, values
+from knotwork.geometry.proofs import APART, NEXT, SAME, Parts, Room, apart, between, crossing
+from knotwork.geometry.sides import Side
 from knotwork.geometry.stretches import common
 
-#: a pair of parts: not neighbours; neighbours of one curve, which share a point; one part twice
-APART, NEXT, SAME = 0, 1, 2
 #: halvings of each parameter at most
 HALVINGS = 48
 #: parts of one pair of pieces: so many that they may run along each other, and so many that it is given up
 MANY, TOO_MANY = 64, 2048
-#: pairs of pieces that are looked at together
-TOGETHER = 1 << 13
-#: Newton's steps
-STEPS = 12
+#: one of several parts that is no longer, as a part of its piece, may be as small as it is straight
+SHORT = 2.0**-10
+#: how the search of a pair ends: found all; there are many parts to compare; there is no room for what is found
+DONE, COMPARE, FULL = 0, 1, 2
 
 
 class Meetings(NamedTuple):
@@ -64,28 +65,16 @@ class Pairs(NamedTuple):
     a: Side
     b: Side
     kind: Array
-    #: of which of the given pairs they are
-    given: Array
 
     def taken(self, which: Array) -> Pairs:
         """Return some of the pairs."""
-        return Pairs(self.a.taken(which), self.b.taken(which), self.kind[which], self.given[which])
+        return Pairs(self.a.taken(which), self.b.taken(which), self.kind[which])
 
-    @classmethod
-    def joined(cls, some: list[Pairs]) -> Pairs:
-        """Return several as one."""
-        a, b = (Side(*(np.concatenate(x) for x in zip(*(p[k] for p in some), strict=True))) for k in (0, 1))
-        return cls(a, b, np.concatenate([p.kind for p in some]), np.concatenate([p.given for p in some]))
-
-    @property
-    def box(self) -> Array:
-        """Between which parameters the parts are, in their pieces."""
-        low = np.concatenate([self.a.low, self.b.low], axis=1)
-        return np.stack([low, low + np.concatenate([self.a.length, self.b.length], axis=1)], axis=2)
-
-
-def _flat(P: Array) -> Array:
-    return P.reshape(len(P), math.prod(P.shape[1:-1]), P.shape[-1])
+    def parts(self) -> Parts:
+        """Return the same for kernels."""
+        nets = [np.ascontiguousarray(x.nets[:, :, None] if x.nets.ndim == 3 else x.nets) for x in self[:2]]
+        low, length = (np.concatenate([getattr(x, name) for x in self[:2]], axis=1) for name in ("low", "length"))
+        return Parts(nets[0], nets[1], low, length, np.stack([self.a.error, self.b.error], axis=1), self.kind)
 
 
 class Stretch(NamedTuple):
@@ -96,43 +85,63 @@ class Stretch(NamedTuple):
     between: tuple[float, float, float, float]
 
 
+class Found(NamedTuple):
+    """What a search writes: as `Meetings`, of which pair."""
+
+    pair: Array
+    box: Array
+    multiplicity: Array
+    change: Array
+    at: Array
+    distance: Array
+
+
 def search(pairs: Pairs, tolerance: float) -> tuple[Meetings, list[Stretch]]:
     """Return where pairs meet, or come nearer than the tolerance, and the stretches that they have in common.
 
     Each part is halved `HALVINGS` times at most. Pieces of which more than `MANY` parts may meet are compared: they may
     have a stretch in common, which is then left out. More than `TOO_MANY` parts of a pair of pieces are halved no more.
     """
-    r = pairs.a.low.shape[1] + pairs.b.low.shape[1]
-    found, stretches, given = [_undecided(pairs.taken(pairs.given < 0))], list[Stretch](), pairs
-    compared = pairs.kind == SAME
-    for _ in range(HALVINGS * r):
-        if not len(pairs.kind):
-            break
-        pairs = pairs.taken(~_far(pairs, tolerance))
-        solved, rest = _crossing(pairs, tolerance)
-        if not rest.all():
-            found.append(solved)
-            pairs = pairs.taken(rest)
-        count = np.bincount(pairs.given, minlength=len(given.kind))
-        if r == 2:
-            for k in np.flatnonzero((count > MANY) & ~compared).tolist():
-                compared[k] = True
-                one = given.taken(np.array([k]))
-                between = common(one.a.nets[0], one.b.nets[0], tolerance + float(one.a.error[0] + one.b.error[0]))
-                if between:
-                    stretch, beside = _without(one, between)
+    found, stretches = [_meetings(pairs, _results(pairs, 0), 0)], list[Stretch]()
+    work = [(pairs, pairs.kind == SAME)]
+    while work:
+        some, compared = work.pop()
+        parts = some.parts()
+        room = Room.of(parts.a, parts.b)
+        start, size = 0, 256 + 8 * len(some.kind)
+        while start < len(some.kind):
+            rows = min(size, 3 * TOO_MANY)
+            now, then = (Parts(*(np.empty((rows, *x.shape[1:]), x.dtype) for x in parts)) for _ in range(2))
+            results = _results(some, size)
+            start, state, count = searched(parts, start, compared, tolerance, now, then, results, room)
+            if state == FULL:
+                size *= 2
+            if state == COMPARE:
+                compared[start] = True
+                one = some.taken(np.array([start]))
+                both = common(one.a.nets[0], one.b.nets[0], tolerance + float(one.a.error[0] + one.b.error[0]))
+                if both:
+                    stretch, beside = _without(one, both)
                     stretches.append(stretch)
-                    pairs = Pairs.joined([pairs.taken(pairs.given != k), beside])
-        small = _small(pairs, tolerance, count[pairs.given] > MANY // 2) | (count[pairs.given] > TOO_MANY)
-        if small.any():
-            found.append(_undecided(pairs.taken(small & (pairs.kind == APART))))
-            pairs = pairs.taken(~small)
-        pairs = _halved(pairs)
-    found.append(_undecided(pairs.taken(pairs.kind == APART)))
+                    work += [(each, np.ones(1, bool)) for each in beside]
+                    start += 1
+                count = int((results.pair[:count] < start).sum())  # or else the pair is searched again
+            found.append(_meetings(some, results, count))
     return Meetings.joined(found), stretches
 
 
-def _without(one: Pairs, between: tuple[float, float, float, float]) -> tuple[Stretch, Pairs]:
+def _results(pairs: Pairs, size: int) -> Found:
+    r = pairs.a.low.shape[1] + pairs.b.low.shape[1]
+    whole = [np.empty(size, np.int64) for _ in range(3)]
+    return Found(whole[0], np.empty((size, r, 2)), whole[1], whole[2], np.empty((size, r)), np.empty(size))
+
+
+def _meetings(pairs: Pairs, results: Found, count: int) -> Meetings:
+    pair, *rest = (x[:count] for x in results)
+    return Meetings(pairs.a.piece[pair], pairs.b.piece[pair], *rest)
+
+
+def _without(one: Pairs, between: tuple[float, float, float, float]) -> tuple[Stretch, list[Pairs]]:
     """Return a stretch in the pieces of a pair, and pairs of what is beside it."""
     s, u, t, v = between
     rest = []
@@ -141,260 +150,214 @@ def _without(one: Pairs, between: tuple[float, float, float, float]) -> tuple[St
     ):  # fmt: skip
         if x < y and z < w:
             a, b = (side.within(np.array([[p]]), np.array([[q]])) for side, p, q in ((one.a, x, y), (one.b, z, w)))
-            rest.append(Pairs(a, b, np.array([APART]), one.given))
+            rest.append(Pairs(a, b, np.array([APART])))
     (low_a, length_a), (low_b, length_b) = ((float(x.low[0, 0]), float(x.length[0, 0])) for x in (one.a, one.b))
     own = low_a + s * length_a, low_a + u * length_a, low_b + t * length_b, low_b + v * length_b
-    nothing = one.taken(np.zeros(0, int))
-    return Stretch(int(one.a.piece[0]), int(one.b.piece[0]), own), Pairs.joined([nothing, *rest])
+    return Stretch(int(one.a.piece[0]), int(one.b.piece[0]), own), rest
 
 
-def _far(pairs: Pairs, tolerance: float) -> Array:
-    """Tell which pairs are farther apart than the tolerance, or meet in the point that neighbours share alone."""
-    p, q = _flat(pairs.a.points), _flat(pairs.b.points)
-    off = pairs.a.error + pairs.b.error
-    near = tolerance + off
-    far: Array = (
-        (p.min(axis=1) - q.max(axis=1) > near[:, None]) | (q.min(axis=1) - p.max(axis=1) > near[:, None])
-    ).any(axis=1)
-    far &= pairs.kind == APART
-    same, following = (np.flatnonzero(pairs.kind == kind) for kind in (SAME, NEXT))
-    far[same] = _onward(p[same], off[same])
-    if len(following):
-        far[following] = _onward(np.concatenate([p[following], q[following][:, 1:]], axis=1), off[following])
-    left = np.flatnonzero(~far & (pairs.kind == APART))
-    p, q, near = p[left], q[left], near[left]
-    u = (q.mean(axis=1) - p.mean(axis=1))[:, :, None]
-    one, two = (_mean_slopes(side.taken(left)) for side in (pairs.a, pairs.b))
-    apart = np.zeros(len(left), bool)
-    for axis in (
-        u,
-        _across(u, one),
-        _across(u, two),
-        _across(u, np.concatenate([one, two], axis=2)),
-        *_normals(one, two),
-    ):
-        x, y = ((P * axis[:, None, :, 0]).sum(axis=2) for P in (p, q))
-        gap = np.maximum(y.min(axis=1) - x.max(axis=1), x.min(axis=1) - y.max(axis=1))
-        apart |= gap > near * np.linalg.norm(axis[:, :, 0], axis=1)
-    far[left] = apart
-    return far
+@kernel(inline=False)
+def moved(source, i, target, j):
+    """Write pair i of one list as pair j of another, or of the same."""
+    for s in range(source.low.shape[1]):
+        target.low[j, s], target.length[j, s] = source.low[i, s], source.length[i, s]
+    target.error[j, 0], target.error[j, 1], target.kind[j] = source.error[i, 0], source.error[i, 1], source.kind[i]
+    filled(source.a[i], target.a[j])
+    filled(source.b[i], target.b[j])
 
 
-def _normals(one: Array, two: Array) -> list[Array]:
-    """Return vectors across the mean derivatives, where these are no basis, in the plane."""
-    if one.shape[1] != 2:
-        return []
-    return [np.stack([-v[:, 1, :1], v[:, 0, :1]], axis=1) for v in (one, two)]
+@kernel
+def filled(net, out):
+    """Out = net."""
+    for i in range(net.shape[0]):
+        for j in range(net.shape[1]):
+            for c in range(net.shape[2]):
+                out[i, j, c] = net[i, j, c]
 
 
-def _across(u: Array, columns: Array) -> Array:
-    """Return what is left of vectors beside the span of others; of those, zeros count for nothing."""
-    done: list[Array] = []
-    with np.errstate(all="ignore"):
-        for c in range(columns.shape[2]):
-            v = columns[:, :, c]
-            for q in done:
-                v = v - (v * q).sum(axis=1)[:, None] * q
-            done.append(np.nan_to_num(v / np.linalg.norm(v, axis=1)[:, None], posinf=0, neginf=0))
-    v = u[:, :, 0]
-    for q in done * 2:
-        v = v - (v * q).sum(axis=1)[:, None] * q
-    return v[:, :, None]
+@kernel
+def extent_of(P, D):
+    """Return the longest side of the box of points, and the largest of their coordinates."""
+    size, far = 0.0, 0.0
+    for c in range(len(D)):
+        low = high = P[0, c]
+        for i in range(len(P)):
+            low, high = min(low, P[i, c]), max(high, P[i, c])
+        size, far = max(size, high - low), max(far, high, -low)
+    return size, far
 
 
-def _mean_slopes(side: Side) -> Array:
-    """Return the mean derivative by each parameter, shape (m, d, p)."""
-    axes = range(1, side.nets.ndim - 1)
-    return np.stack([differences(side.nets, axis).mean(axis=1) for axis in axes], axis=2)
+@kernel
+def straight(net, P, enough, D):
+    """Tell whether second differences of points prove that a net is as straight as that."""
+    rows, columns = net.shape[0], net.shape[1]
+    for i in range(rows):
+        for j in range(columns):
+            k = i * columns + j
+            for c in range(len(D)):
+                if i > 1:
+                    bend = P[k, c] - 2 * P[k - columns, c] + P[k - 2 * columns, c]
+                    if not abs(bend) * (rows - 1) * (rows - 1) / 8 <= enough:
+                        return False
+                if j > 1:
+                    bend = P[k, c] - 2 * P[k - 1, c] + P[k - 2, c]
+                    if not abs(bend) * (columns - 1) * (columns - 1) / 8 <= enough:
+                        return False
+    return True
 
 
-def _onward(P: Array, off: Array) -> Array:
-    """Tell which polygons go on in one direction throughout, so that their curves cross themselves nowhere."""
-    steps = np.diff(P, axis=1)
-    size = np.linalg.norm(steps, axis=2)
-    some = size > 2 * off[:, None]
-    unit = np.where(some[..., None], steps / np.where(some, size, 1)[..., None], 0)
-    # the middle of the cone: twice, as steps are not evenly spread in it
-    along = unit.sum(axis=1)
-    with np.errstate(all="ignore"):
-        along /= np.linalg.norm(along, axis=1)[:, None]
-    ahead = (unit * along[:, None]).sum(axis=2) * size > 2 * off[:, None]
-    onward: Array = (ahead | ~some).all(axis=1) & some.any(axis=1)
-    return onward
+@kernel(inline=False)
+def small(pairs, k, tolerance, several, room):
+    """Tell whether a pair is as small as the tolerance, or rounding; one of several, whether it is as straight."""
+    a, b, D = pairs.a[k], pairs.b[k], room.D
+    points_of(a, room.P, D)
+    points_of(b, room.Q, D)
+    enough = tolerance + 4 * (pairs.error[k, 0] + pairs.error[k, 1])
+    if extent_of(room.P, D)[0] <= enough and extent_of(room.Q, D)[0] <= enough:
+        return True
+    if not several or pairs.kind[k] != APART:
+        return False
+    for s in range(len(room.x)):
+        if pairs.length[k, s] > SHORT:
+            return False
+    return straight(a, room.P, enough, D) and straight(b, room.Q, enough, D)
 
 
-def _crossing(pairs: Pairs, tolerance: float) -> tuple[Meetings, Array]:
-    """Return what crosses at an angle, once, and which pairs are left."""
-    rest = np.ones(len(pairs.kind), bool)
-    at = np.flatnonzero(pairs.kind == APART)
-    at = at[_independent(pairs.taken(at))]
-    some = pairs.taken(at)
-    x, J = _solution(some)
-    M = left_inverse(J)
-    off = some.a.error + some.b.error
-    gap = _gap(some, x)
-    step = abs((M * gap[:, None]).sum(axis=2))
-    slack = 2 * abs(M).sum(axis=2) * off[:, None]
-    h = 2 * step + 2 * slack + 8 * UNIT
-    distance = np.linalg.norm(gap, axis=1)
-    good = np.zeros(len(at), bool)
-    with np.errstate(all="ignore"):
-        inside = (
-            np.isfinite(h).all(axis=1)
-            & (x + 16 * h >= 0).all(axis=1)
-            & (x - 16 * h <= 1).all(axis=1)
-            & (h < 0.01).all(axis=1)
-        )
-    inside &= distance <= tolerance + 8 * off
-    for _ in range(3):
-        left = np.flatnonzero(inside & ~good)
-        if not len(left):
-            break
-        one = some.taken(left)
-        good[left] = crosses(one.a.nets, one.b.nets, x[left], h[left], M[left], slack[left])
-        h[~good] *= 4
-    with np.errstate(all="ignore"):
-        good &= (x + h >= 0).all(axis=1) & (x - h <= 1).all(axis=1)
-    rest[at[good]] = False
-    some, x, h, J = some.taken(good), x[good], h[good], J[good]
-    low = np.concatenate([some.a.low, some.b.low], axis=1)
-    length = np.concatenate([some.a.length, some.b.length], axis=1)
-    h = h * length + 2 * UNIT
-    x = low + x * length
-    change = np.zeros(len(x), int)
-    if J.shape[1:] == (2, 2):
-        change = np.sign(J[:, 0, 0] * J[:, 1, 1] - J[:, 1, 0] * J[:, 0, 1]).astype(int)
-    box = np.clip(np.stack([x - h, x + h], axis=2), 0, 1)
-    ones = np.ones(len(x), int)
-    return Meetings(some.a.piece, some.b.piece, box, ones, change, np.clip(x, 0, 1), distance[good]), rest
+@kernel(inline=False)
+def halved(pairs, k, then, m, room):
+    """Write a pair with the larger part halved; one part twice as its halves, and the pair of them; return how many."""
+    a, b, D, p = pairs.a[k], pairs.b[k], room.D, parameters(pairs.a[k])
+    kind, r = pairs.kind[k], len(room.x)
+    points_of(a, room.P, D)
+    points_of(b, room.Q, D)
+    (size_a, far_a), (size_b, far_b) = extent_of(room.P, D), extent_of(room.Q, D)
+    long_a, long_b = pairs.length[k, 0], pairs.length[k, p]
+    if p == 2:
+        long_a = max(long_a, pairs.length[k, 1])
+    if r - p == 2:
+        long_b = max(long_b, pairs.length[k, p + 1])
+    first = size_a > size_b or (size_a == size_b and long_a >= long_b) or kind == SAME
+    axis = steeper(a, room.P, D) if first else steeper(b, room.Q, D)
+    s = axis if first else p + axis
+    count = 3 if kind == SAME else 2
+    for c in range(count):
+        moved(pairs, k, then, m + c)
+    half = pairs.length[k, s] / 2
+    then.length[m, s] = then.length[m + 1, s] = half
+    then.low[m + 1, s] += half
+    which = 0 if first else 1
+    order = max(a.shape[0], a.shape[1]) if first else max(b.shape[0], b.shape[1])
+    error = pairs.error[k, which] + 2 * order * UNIT * (far_a if first else far_b)
+    then.error[m, which] = then.error[m + 1, which] = error
+    if first:
+        halve(a, axis, then.a[m], then.a[m + 1])
+    else:
+        halve(b, axis, then.b[m], then.b[m + 1])
+    if kind == SAME:
+        for c in range(2):
+            filled(then.a[m + c], then.b[m + c])
+            then.low[m + c, 1], then.length[m + c, 1], then.error[m + c, 1] = then.low[m + c, 0], half, error
+        moved(then, m, then, m + 2)
+        filled(then.b[m + 1], then.b[m + 2])
+        then.low[m + 2, 1], then.kind[m + 2] = then.low[m + 1, 0], NEXT
+    elif kind == NEXT:  # one of the halves has the point that neighbours share
+        then.kind[m if first else m + 1] = APART
+    return m + count
 
 
-def _independent(pairs: Pairs) -> Array:
-    """Tell which pairs cross once at most: their derivatives point along axes of their own."""
-    J = np.concatenate([_mean_slopes(pairs.a), -_mean_slopes(pairs.b)], axis=2)
-    M = left_inverse(J)
-    norm = abs(M).sum(axis=2)
-    good: Array = np.asarray(np.isfinite(M).all(axis=(1, 2)))
-    r = 0
-    for side, sign in ((pairs.a, 1), (pairs.b, -1)):
-        for axis in range(1, side.nets.ndim - 1):
-            V = differences(side.nets, axis)
-            off = 2 * side.error[:, None]
-            v = sign * (M[:, None] * V[:, :, None]).sum(axis=3)
-            own = v[:, :, r]
-            others = abs(v).sum(axis=2) - abs(own)
-            moves = np.linalg.norm(V, axis=2) > off
-            with np.errstate(all="ignore"):
-                ahead = own - others > norm.sum(axis=1)[:, None] * off
-            good = good & (ahead | ~moves).all(axis=1) & moves.any(axis=1)
-            r += 1
-    return good
+@kernel
+def steeper(net, P, D):
+    """Return the parameter across which neighbouring points differ most."""
+    columns, down, right = net.shape[1], 0.0, 0.0
+    for i in range(net.shape[0]):
+        for j in range(columns):
+            below, beside, k = 0.0, 0.0, i * columns + j
+            for c in range(len(D)):
+                if i > 0:
+                    below += (P[k, c] - P[k - columns, c]) * (P[k, c] - P[k - columns, c])
+                if j > 0:
+                    beside += (P[k, c] - P[k - 1, c]) * (P[k, c] - P[k - 1, c])
+            down, right = max(down, below), max(right, beside)
+    return 0 if down >= right else 1
 
 
-def _gap(pairs: Pairs, x: Array) -> Array:
-    p = pairs.a.low.shape[1]
-    gap: Array = values(pairs.a.nets, x[:, :p])[0] - values(pairs.b.nets, x[:, p:])[0]
-    return gap
+@kernel
+def told(pairs, k, found, row, room):
+    """Write a crossing that was proven."""
+    r, d = len(room.x), len(room.D)
+    square = 0.0
+    for s in range(r):
+        x = pairs.low[k, s] + room.x[s] * pairs.length[k, s]
+        h = room.h[s] * pairs.length[k, s] + 2 * UNIT
+        found.box[row, s, 0], found.box[row, s, 1] = max(x - h, 0.0), min(x + h, 1.0)
+        found.at[row, s] = min(max(x, 0.0), 1.0)
+    for c in range(d):
+        square += room.gap[c] * room.gap[c]
+    found.distance[row], found.multiplicity[row], found.change[row] = math.sqrt(square), 1, 0
+    if r == 2 and d == 2:
+        turn = room.J[0, 0] * room.J[1, 1] - room.J[1, 0] * room.J[0, 1]
+        found.change[row] = 1 if turn > 0 else -1 if turn < 0 else 0
 
 
-def _solution(pairs: Pairs) -> tuple[Array, Array]:
-    """Return where parts cross, or are nearest, by Newton's (Gauss's) steps from the middle, and J there."""
-    p = pairs.a.low.shape[1]
-    x = np.full((len(pairs.kind), p + pairs.b.low.shape[1]), 0.5)
-    for _ in range(STEPS):
-        (a, da), (b, db) = values(pairs.a.nets, x[:, :p]), values(pairs.b.nets, x[:, p:])
-        J = np.concatenate([da, -db], axis=2)
-        step = (left_inverse(J) * (a - b)[:, None]).sum(axis=2)
-        with np.errstate(all="ignore"):
-            moved = np.clip(x - step, -0.25, 1.25)
-            x = np.where(np.isfinite(moved), moved, x)
-            if not (abs(step) > 4 * UNIT).any():
+@kernel(inline=False)
+def undecided(pairs, k, found, row, room):
+    """Write a pair as it is."""
+    square = 0.0
+    for s in range(len(room.x)):
+        room.x[s] = 0.5
+        low, length = pairs.low[k, s], pairs.length[k, s]
+        found.box[row, s, 0], found.box[row, s, 1], found.at[row, s] = low, low + length, low + length / 2
+    between(pairs.a[k], pairs.b[k], room)
+    for c in range(len(room.D)):
+        square += room.gap[c] * room.gap[c]
+    found.distance[row], found.multiplicity[row], found.change[row] = math.sqrt(square), 0, 0
+
+
+@kernel
+def searched(given, start, compared, tolerance, now, then, found, room):
+    """Search pairs from `start` on; return where that ended, why, and how many rows were written."""
+    rows = 0
+    for g in range(start, len(given.kind)):
+        begin, n = rows, 1
+        moved(given, g, now, 0)
+        for _ in range(HALVINGS * len(room.x)):
+            m = 0
+            for k in range(n):
+                if apart(now, k, tolerance, room):
+                    continue
+                if now.kind[k] == APART and crossing(now, k, tolerance, room):
+                    if rows == len(found.pair):
+                        return g, FULL, begin
+                    told(now, k, found, rows, room)
+                    found.pair[rows] = g
+                    rows += 1
+                    continue
+                if m < k:
+                    moved(now, k, now, m)
+                m += 1
+            n = m
+            if rows + n > len(found.pair) or len(then.kind) < 3 * min(n, TOO_MANY):
+                return g, FULL, begin
+            if n > MANY and len(room.x) == 2 and not compared[g]:
+                return g, COMPARE, rows
+            m = 0
+            for k in range(n):
+                if n > TOO_MANY or small(now, k, tolerance, n > MANY // 2, room):
+                    if now.kind[k] == APART:
+                        undecided(now, k, found, rows, room)
+                        found.pair[rows] = g
+                        rows += 1
+                else:
+                    m = halved(now, k, then, m, room)
+            n = m
+            now, then = then, now
+            if n == 0:
                 break
-    return x, J if len(x) else np.zeros((0, pairs.a.nets.shape[-1] - 1, x.shape[1]))
-
-
-def crosses(a: Array, b: Array, x: Array, h: Array, M: Array, slack: Array) -> Array:
-    """Tell which nets cross within h of x: M (a − b) has opposite signs on opposite faces of that box.
-
-    Any arithmetic will do; `slack` is by how much rounding may move a component of M (a − b).
-    """
-    p = a.ndim - 2
-    A, B = part_of(a, x[:, :p] - h[:, :p], x[:, :p] + h[:, :p]), part_of(b, x[:, p:] - h[:, p:], x[:, p:] + h[:, p:])
-    A, B = A[..., :-1] / A[..., -1:], B[..., :-1] / B[..., -1:]
-    good = np.ones(len(x), bool)
-
-    def component(r: int, P: Array) -> Array:
-        found: Array = (M[:, r].reshape(-1, *[1] * (P.ndim - 2), P.shape[-1]) * P).sum(axis=-1)
-        return found
-
-    def ends(F: Array) -> tuple[Array, Array]:
-        F = F.reshape(len(F), math.prod(F.shape[1:]))
-        return F.min(axis=1), F.max(axis=1)
-
-    for r in range(M.shape[1]):
-        F, G = component(r, A), component(r, B)
-        for end, sign in ((0, -1), (-1, 1)):
-            f, g = (F.take(end, r + 1), G) if r < p else (F, G.take(end, r - p + 1))
-            (low, high), (least, most) = ends(f), ends(g)
-            good &= np.asarray((low - most if sign > 0 else least - high) > slack[:, r], bool)
-    return good
-
-
-def _size(P: Array) -> Array:
-    F = _flat(P)
-    size: Array = (F.max(axis=1) - F.min(axis=1)).max(axis=1)
-    return size
-
-
-def _small(pairs: Pairs, tolerance: float, several: Array) -> Array:
-    """Tell which pairs are as small as the tolerance, or rounding; of several of one pair, which are as straight."""
-    p, q = pairs.a.points, pairs.b.points
-    enough = tolerance + 4 * (pairs.a.error + pairs.b.error)
-    small = (_size(p) <= enough) & (_size(q) <= enough)
-    short = several & (pairs.a.length <= 2.0**-10).all(axis=1) & (pairs.b.length <= 2.0**-10).all(axis=1)
-    flat: Any = True
-    for P in (p, q):
-        for axis in range(1, P.ndim - 1):
-            bend = abs(np.diff(P, 2, axis=axis))
-            n = P.shape[axis] - 1
-            if bend.size:
-                flat = flat & (bend.reshape(len(P), -1).max(axis=1) * n * n / 8 <= enough)
-    either: Array = small | (short & flat & (pairs.kind == APART))
-    return either
-
-
-def _undecided(pairs: Pairs) -> Meetings:
-    r = pairs.box.shape[1]
-    count = len(pairs.kind)
-    half = np.full((count, r), 0.5)
-    nothing = np.zeros(count, int)
-    distance = np.linalg.norm(_gap(pairs, half), axis=1)
-    box = pairs.box
-    return Meetings(pairs.a.piece, pairs.b.piece, box, nothing, nothing, box.mean(axis=2), distance)
-
-
-def _halved(pairs: Pairs) -> Pairs:
-    """Return pairs with the larger part of each halved; one part twice becomes its halves, and the pair of them."""
-    if not len(pairs.kind):
-        return pairs
-    found = []
-    same = pairs.kind == SAME
-    if same.any():
-        some = pairs.taken(same)
-        left, right = some.a.halved()
-        for a, b, now in ((left, left, SAME), (right, right, SAME), (left, right, NEXT)):
-            found.append(Pairs(a, b, np.full(len(some.kind), now), some.given))
-    size_a, size_b = _size(pairs.a.points), _size(pairs.b.points)
-    first = ~same & (
-        (size_a > size_b) | ((size_a == size_b) & (pairs.a.length.max(axis=1) >= pairs.b.length.max(axis=1)))
-    )
-    for which, k in ((first, 0), (~same & ~first, 1)):
-        some = pairs.taken(which)
-        if not len(some.kind):
-            continue
-        left, right = (some.a, some.b)[k].halved()
-        inner = right if k == 0 else left  # which of the halves the neighbours share their point with
-        for half in (left, right):
-            kind = some.kind if half is inner else np.full(len(some.kind), APART)
-            found.append(Pairs(half, some.b, kind, some.given) if k == 0 else Pairs(some.a, half, kind, some.given))
-    return Pairs.joined(found)
+        if rows + n > len(found.pair):
+            return g, FULL, begin
+        for k in range(n):
+            if now.kind[k] == APART:
+                undecided(now, k, found, rows, room)
+                found.pair[rows] = g
+                rows += 1
+    return len(given.kind), DONE, rows

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.geometry.bezier import halves, restricted
+from knotwork.geometry.bezier import restricted
+from knotwork.geometry.nets import every_value
 from knotwork.geometry.pieces import TINY, UNIT, unrolling
 from knotwork.insertion.pieces import to_bezier
 from knotwork.spline import Spline
@@ -36,23 +37,6 @@ class Side(NamedTuple):
         """Return some of the parts."""
         return Side(*(x[which] for x in self))
 
-    def halved(self) -> tuple[Side, Side]:
-        """Return the halves of all parts, across the parameter in which control points differ most."""
-        P = self.points
-        axes = range(1, P.ndim - 1)
-        rise = [np.linalg.norm(np.diff(P, axis=axis), axis=-1).reshape(len(P), -1).max(axis=1) for axis in axes]
-        across = np.stack(rise).argmax(axis=0)
-        left, right = self.nets.copy(), self.nets.copy()
-        length, further = self.length.copy(), self.low.copy()
-        for axis in axes:
-            some = across == axis - 1
-            left[some], right[some] = halves(self.nets[some], axis)
-            length[some, axis - 1] /= 2
-            further[some, axis - 1] += length[some, axis - 1]
-        size = abs(P).reshape(len(P), -1).max(axis=1)
-        error = self.error + 2 * max(self.nets.shape[1:-1]) * UNIT * size
-        return Side(left, self.piece, self.low, length, error), Side(right, self.piece, further, length, error)
-
     def within(self, low: Array, high: Array) -> Side:
         """Return the parts over [low, high], which are of shape (m, p) and go from 0 to 1 in each part."""
         nets = part_of(self.nets, low, high)
@@ -70,25 +54,13 @@ def part_of(nets: Array, low: Array, high: Array) -> Array:
     return nets
 
 
-def _along(nets: Array, t: Array) -> tuple[Array, Array]:
-    """Return values and derivatives by the first parameter (de Casteljau)."""
-    n = nets.shape[1] - 1
-    t = t.reshape(-1, *[1] * (nets.ndim - 1))
-    while nets.shape[1] > 2:
-        nets = (1 - t) * nets[:, :-1] + t * nets[:, 1:]
-    last = ((1 - t) * nets[:, :-1] + t * nets[:, 1:])[:, 0]
-    return last, n * (nets[:, 1] - nets[:, 0])
-
-
 def values(nets: Array, x: Array) -> tuple[Array, Array]:
     """Return points at parameters, shape (m, d), and derivatives, shape (m, d, p)."""
-    value, slope = _along(nets, x[:, 0])
-    slopes = [slope]
-    if x.shape[1] == 2:
-        value, second = _along(value, x[:, 1])
-        slopes = [_along(slope, x[:, 1])[0], second]
-    point, w = value[:, :-1] / value[:, -1:], value[:, -1:]
-    return point, np.stack([(s[:, :-1] - point * s[:, -1:]) / w for s in slopes], axis=2)
+    d, p = nets.shape[-1] - 1, x.shape[1]
+    points, slopes = np.empty((len(nets), d), nets.dtype), np.empty((len(nets), d, p), nets.dtype)
+    work = np.empty((6, max(*nets.shape[1:-1], d + 1)), nets.dtype)
+    every_value(np.ascontiguousarray(nets[:, :, None] if p == 1 else nets), x, points, slopes, work)
+    return points, slopes
 
 
 class Whole(NamedTuple):
@@ -156,50 +128,3 @@ def _heaviest(spline: Spline) -> Array | float:
     q = np.searchsorted(space.unrolled.knots, space.breaks[:-1], "right") - 1
     found: Array = weights[space.unrolled.own(q[:, None] + np.arange(-space.degree, 1))].max(axis=1)
     return found
-
-
-def differences(nets: Array, axis: int) -> Array:
-    """Return vectors in whose cone the derivative by a parameter is everywhere, shape (m, k, d).
-
-    Of a curve, also of a rational one, these are differences of neighbouring points: its derivative is a sum of
-    P_j − P_i for i < j with factors above 0. Those of a surface are between two points, or two pairs of points, of
-    neighbouring rows: what belongs to b_j b_l in a difference of the rows, which are rational curves themselves.
-    """
-    H = nets if axis == 1 else nets.swapaxes(1, 2)
-    X, w = H[..., :-1], H[..., -1:]
-    if H.ndim == 3:
-        return np.diff(X / w, axis=1)
-    j, l = np.triu_indices(H.shape[2])
-    ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
-    total: Any = 0
-    weight: Any = 0
-    for p, q in ((j, l), (l, j)):
-        one, two = w[ahead][:, :, p], w[behind][:, :, q]
-        total = total + (X[ahead][:, :, p] * two - X[behind][:, :, q] * one)
-        weight = weight + one * two
-    V: Array = total / weight
-    return V.reshape(len(V), V.shape[1] * V.shape[2], V.shape[-1])
-
-
-def left_inverse(columns: Array) -> Array:
-    """Return M with M J = 1 for matrices J of shape (m, d, r), by Gram and Schmidt; not finite where there is none."""
-    m, _, r = columns.shape
-    R: Array = np.zeros((m, r, r))
-    Q: list[Array] = []
-    with np.errstate(all="ignore"):
-        for c in range(r):
-            v = columns[:, :, c]
-            for _ in range(2):
-                for b, q in enumerate(Q):
-                    part = (q * v).sum(axis=1)
-                    R[:, b, c] += part
-                    v = v - part[:, None] * q
-            R[:, c, c] = np.linalg.norm(v, axis=1)
-            Q.append(v / R[:, c, c, None])
-        rows: list[Any] = [None] * r
-        for c in reversed(range(r)):
-            row = Q[c]
-            for b in range(c + 1, r):
-                row = row - R[:, c, b, None] * rows[b]
-            rows[c] = row / R[:, c, c, None]
-    return np.stack(rows, axis=1)
