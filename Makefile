@@ -9,7 +9,7 @@ SAMPLE ?= 300
 # Random results of each kind that `make check-removal` and `make check-geometry` work out again.
 NUMBER ?= 1000
 
-.PHONY: help demo book docs test slow thorough bounds lint bench bench-fonts bench-files bench-removal check-removal check-geometry methods crossovers accuracy clean
+.PHONY: help demo book docs test slow thorough bounds lint bench bench-fonts bench-files pictures-files bench-removal check-removal check-geometry methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -49,6 +49,9 @@ bench-fonts: .venv/tested  ## points of glyphs beside cu2qu and qu2cu
 
 bench-files: .venv/tested  ## thousands of drawings made lighter, drawn before and after, beside svgo and Inkscape: make bench-files SAMPLE=
 	$(BIN)/python benchmarks/drawings.py $(if $(SAMPLE),--sample $(SAMPLE))
+
+pictures-files: .venv/tested  ## drawings and maps before and after, to be looked at: build/pictures
+	$(BIN)/python benchmarks/pictures.py
 
 bench-removal: .venv/tested  ## control points that `reduce` leaves, and its time, beside peers
 	$(BIN)/python benchmarks/removal.py

@@ -1,4 +1,4 @@
-"""What the benchmark of drawings fetches and runs: packages of drawings, resvg and svgo in Node, Inkscape, Chromium."""
+"""What the benchmark of drawings fetches and runs: packages of drawings and maps, resvg, svgo, Inkscape, Chromium."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ICONS = {
     "bootstrap-icons@1.13.2": "icons",
     "lucide-static@1.62.0": "icons",
 }
-TOOLS = ("@resvg/resvg-js@2.6.2", "svgo@4.1.0")
+TOOLS = ("@resvg/resvg-js@2.6.2", "svgo@4.1.0", "world-atlas@2.0.2", "topojson-client@3.1.0")
 SIZE = 1000
 
 
@@ -72,6 +72,10 @@ class Node:
             return str(told["error"])
         image = np.frombuffer(pixels, np.uint8).reshape(told["height"], told["width"], 4)[..., :3]
         return image, max(told["width"], told["height"]) / max(told["units"])
+
+    def atlas(self, name: str) -> bytes:
+        """Return a map of the package world-atlas as GeoJSON."""
+        return self.ask(atlas=name)[1]
 
     def svgo(self, data: bytes) -> bytes:
         """Return what svgo makes of a drawing: itself, if it cannot."""

@@ -1,4 +1,5 @@
-// Answers requests, a JSON object a line: {"render": svg} with the pixels of resvg, {"svgo": svg} with lighter text.
+// Answers requests, a JSON object a line: {"render": svg} with the pixels of resvg, {"svgo": svg} with lighter text,
+// {"atlas": name} with a map of the package world-atlas as GeoJSON.
 import { createRequire } from "node:module";
 import { createInterface } from "node:readline";
 import { writeSync } from "node:fs";
@@ -6,10 +7,15 @@ import { writeSync } from "node:fs";
 const require = createRequire(`${process.argv[2]}/package.json`);
 const { Resvg } = require("@resvg/resvg-js");
 const { optimize } = require("svgo");
+const { feature } = require("topojson-client");
 const font = { loadSystemFonts: false };
 
 function answer(request) {
   if (request.svgo !== undefined) return [{}, Buffer.from(optimize(request.svgo).data)];
+  if (request.atlas !== undefined) {
+    const map = require(`world-atlas/${request.atlas}.json`);
+    return [{}, Buffer.from(JSON.stringify(feature(map, map.objects[request.atlas.split("-")[0]])))];
+  }
   const { width, height } = new Resvg(request.render, { font });
   const fitTo = { mode: width >= height ? "width" : "height", value: request.size };
   const image = new Resvg(request.render, { font, fitTo, background: "white" }).render();

@@ -75,6 +75,8 @@ class Place:
     visible: bool = True
     filled: bool = True
     stroked: bool = False
+    #: whether a marker stands at each joint
+    marked: bool = False
     layer: str | None = None
     chain: tuple[str, ...] = ()
     depth: int = 0
@@ -174,11 +176,14 @@ class Drawn:
         fill, stroke = (self.styles.value(element, name) for name in ("fill", "stroke"))
         filled = place.filled if fill in ("", "inherit") else fill != "none"
         stroked = place.stroked if stroke in ("", "inherit") else stroke != "none"
+        marker = self.styles.value(element, "marker-mid") or self.styles.value(element, "marker")
+        marked = place.marked if marker in ("", "inherit") else marker != "none"
         named = element.attributes.get(_LABEL) or element.attributes.get("id")
         layer = named if element.tag == "g" and named else place.layer
         place = replace(
-            place, map=total, visible=visible, filled=filled, stroked=stroked, layer=layer, depth=place.depth + 1
-        )
+            place, map=total, visible=visible, filled=filled, stroked=stroked, marked=marked, layer=layer,
+            depth=place.depth + 1,
+        )  # fmt: skip
         if element.tag == "svg" and element is not self.root:
             return self._viewport(element, element, place)
         return place

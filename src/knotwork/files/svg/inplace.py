@@ -205,7 +205,7 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
                     units="px",
                     where=f"{where}, subpath {number + 1}" if len(subpaths) > 1 else where,
                     scale=scales[key],
-                    fixed=stands is None,
+                    fixed=stands is None or at.marked,  # markers count joints
                     straight=corners,
                 )
             )

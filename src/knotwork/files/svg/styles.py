@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import re
+from collections.abc import Mapping
 
 from knotwork.files.svg.tree import Element
 
@@ -16,7 +18,9 @@ LENGTHS = ("cx", "cy", "r", "rx", "ry", "x", "y", "width", "height")
 PLACED = ("transform", "transform-origin", "transform-box")
 #: whether the inside and the line are drawn
 PAINTED = ("fill", "stroke")
-_PROPERTIES = frozenset((*SHOWN, *LENGTHS, *PLACED, *PAINTED, "d"))
+#: whether something stands at each joint
+MARKED = ("marker-mid", "marker")
+_PROPERTIES = frozenset((*SHOWN, *LENGTHS, *PLACED, *PAINTED, *MARKED, "d"))
 
 
 class Styles:
@@ -27,7 +31,7 @@ class Styles:
     """
 
     def __init__(self, root: Element) -> None:
-        self.rules: list[tuple[tuple[int, int, int], str, set[str], dict[str, str]]] = []
+        self.rules: list[tuple[tuple[int, int, int], str, set[str], Mapping[str, str]]] = []
         for sheet in _sheets(root):
             for rule in _without_comments(sheet).split("}"):
                 selectors, _, body = rule.rpartition("{")
@@ -72,7 +76,8 @@ def _without_comments(text: str) -> str:
     return " ".join([first, *(part.partition("*/")[2] for part in others)])
 
 
-def _declarations(text: str) -> dict[str, str]:
+@functools.lru_cache(256)  # each is asked for many properties in turn
+def _declarations(text: str) -> Mapping[str, str]:
     found = {}
     for declaration in text.split(";"):
         name, _, value = declaration.partition(":")
