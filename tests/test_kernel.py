@@ -7,6 +7,7 @@ import collections
 import copy
 import functools
 import importlib
+import importlib.machinery
 import inspect
 import os
 import pkgutil
@@ -14,6 +15,7 @@ import stat
 import subprocess
 import sys
 import textwrap
+import types
 from pathlib import Path
 
 import numpy as np
@@ -580,3 +582,14 @@ def test_what_only_kernels_call_is_no_machine_code_of_its_own(tmp_path):
     run(code, tmp_path, KNOTWORK_JIT="always", KNOTWORK_CACHE=str(tmp_path / "cache"), PYTHONDONTWRITEBYTECODE="1")
     kept = {path.parent.parent.name.partition("-")[0] for path in (tmp_path / "cache").rglob("*.nbc")}
     assert kept == {"total", "term"}
+
+
+def test_work_goes_on_plain_while_another_thread_imports_numba(monkeypatch):
+    numba = types.ModuleType("numba")
+    numba.__spec__ = importlib.machinery.ModuleSpec("numba", None)
+    monkeypatch.setitem(sys.modules, "numba", numba)
+    assert kernels._numba_is_there()
+    numba.__spec__._initializing = True
+    assert not kernels._numba_is_there()
+    monkeypatch.delitem(sys.modules, "numba")
+    assert not kernels._numba_is_there()

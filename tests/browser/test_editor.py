@@ -34,7 +34,7 @@ def browser():
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory):
-    with editor(tmp_path_factory.mktemp("store") / "drawings.sqlite3") as running:
+    with editor(tmp_path_factory.mktemp("store") / "drawings.sqlite3", warm=True) as running:
         yield running
 
 
@@ -198,6 +198,26 @@ def test_a_drawing_by_keys_alone(sheet):
     assert sheet.page.is_visible("#keys")
     press("Escape")
     assert not sheet.page.is_visible("#keys")
+
+
+def test_a_crowded_region_gets_as_many_parameters_as_its_length_asks_for(sheet, tmp_path):
+    curve = kw.curve(POINTS, 3, KNOTS)
+    sheet.bring(curve, tmp_path)
+    sheet.page.evaluate(
+        "app.vertices = new Set([4, 7]), app.panel.fill()"
+    )  # nodes .61667 and .81667, knots about: .5, .9
+    if not sheet.page.is_visible("#balance"):
+        sheet.page.click("#panel-toggle")
+    with sheet.change():
+        sheet.page.click("#balance")
+    knots = sheet.curves[0]["knots"]
+    sides, nodes = np.hypot(*np.diff(curve.points, axis=0).T), curve.space.nodes
+    middle = (nodes[:-1] + nodes[1:]) / 2
+    inside = (middle > 0.5) & (middle < 0.9)
+    end = 0.6 * sides.sum() / sides[~inside].sum()  # the rest keeps 0.6 parameters
+    assert np.isclose(knots[-1], end, rtol=1e-8)
+    assert np.allclose(np.diff(knots[5:11]), np.diff(KNOTS[5:11]) * (end - 0.6) / 0.4, rtol=1e-6)
+    assert np.allclose(knots[:6], KNOTS[:6], rtol=0, atol=1e-9)
 
 
 def test_two_fingers_move_the_sheet_and_draw_nothing(browser, served):

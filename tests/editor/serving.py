@@ -15,7 +15,8 @@ START = """
 import sys
 from pathlib import Path
 from knotwork.editor.launch import edit
-edit(store=Path(sys.argv[1]), port=int(sys.argv[2]), browse=False, announce=lambda said: print(said, flush=True))
+announce = lambda said: print(said, flush=True)
+edit(store=Path(sys.argv[1]), port=int(sys.argv[2]), browse=False, warm=sys.argv[3] == "warm", announce=announce)
 """
 
 
@@ -35,11 +36,11 @@ class Served(NamedTuple):
 
 
 @contextmanager
-def editor(store, port=0):
+def editor(store, port=0, warm=False):
     """Run the editor on a store until the block ends."""
     source = str(Path(kw.__file__).parents[1])
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([source, os.environ.get("PYTHONPATH", "")])}
-    command = [sys.executable, "-c", START, str(store), str(port)]
+    command = [sys.executable, "-c", START, str(store), str(port), "warm" if warm else ""]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as process:
         try:
             url = process.stdout.readline().strip()

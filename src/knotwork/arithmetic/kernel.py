@@ -128,7 +128,7 @@ class Kernel:
             with np.errstate(all="ignore"):
                 return self.plain(*args)
         expected = PER_ELEMENT * _elements(args) * (1 if self.options["forceinline"] else SEARCH)
-        if mode == "always" or "numba" in sys.modules or _spent + expected > LOADING_PAYS:
+        if mode == "always" or _numba_is_there() or _spent + expected > LOADING_PAYS:
             return self.compiled(*args)
         start = time.perf_counter()
         with np.errstate(all="ignore"):
@@ -213,6 +213,12 @@ class Kernel:
         for name, callee in self._callees():
             hasher.update(f"{name}:{callee.digest};".encode())
         return hasher.hexdigest()[:16]
+
+
+def _numba_is_there() -> bool:
+    """Tell whether Numba is imported; while another thread imports it, work goes on without."""
+    spec = getattr(sys.modules.get("numba"), "__spec__", None)
+    return spec is not None and not getattr(spec, "_initializing", False)
 
 
 def _elements(args: tuple[Any, ...]) -> int:

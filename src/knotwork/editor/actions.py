@@ -186,11 +186,18 @@ def _reduced_between(curve: Spline, a: float, b: float, tolerance: float) -> tup
 
 
 def balance(sketch: Sketch, message: Message) -> Done:
-    """Stretch the parameters of a region to the pace of the rest."""
+    """Stretch the parameters of a region, out to the next knots, to the pace of the rest (§7.5.2)."""
     index, curve = _curve(sketch, message)
-    a, b = message.point("region").tolist()
+    a, b = np.clip(message.point("region"), *curve.space.domain)
+    breaks = curve.space.breaks
+    a, b = breaks[breaks <= a][-1].item(), breaks[breaks >= b][0].item()
     after = balanced(curve, a, b)
-    return Done(sketch.with_curve(index, after, begun=False), "balanced", "The region has more parameters now.", index)
+    if after == curve:
+        raise ParameterError("the region is the whole curve: there is no rest whose pace it could take")
+    c, d = after.space.domain
+    now = b - a + (d - c) - (curve.space.domain[1] - curve.space.domain[0])
+    reason = f"The region takes {now:.3g} of {d - c:.3g} parameters now, at the pace of the rest."
+    return Done(sketch.with_curve(index, after, begun=False), "balanced", reason, index)
 
 
 def cut_out(sketch: Sketch, message: Message) -> Done:

@@ -103,17 +103,25 @@ def edit(
 
 
 def _warm() -> None:
-    """Fit a curve drawn by hand, in another process that leaves the processor to this one; what it compiles is kept."""
+    """Have what a stroke runs compiled by another process that leaves the processor to this one; then load it here.
+
+    Kernels run as plain Python until much of it is done: the first hundred strokes would take ten times as long.
+    """
     script = "import os; getattr(os, 'nice', int)(15); from knotwork.editor.launch import first_curve; first_curve()"
     subprocess.run([sys.executable, "-c", script], check=False, capture_output=True)
+    first_curve()
 
 
 def first_curve() -> None:
-    """Draw an arc of 400 points by hand, and forget it."""
+    """Draw an arc of 400 points by hand, across it a straight stroke, and forget them: all of it compiled."""
+    import numba  # noqa: F401  # from now on kernels run compiled
+
+    from knotwork.editor.views import view
     from knotwork.sketch import Sketch, stroke
 
     turn = np.linspace(0, np.pi, 400)
-    stroke(Sketch(), np.stack([np.cos(turn), np.sin(turn)], axis=1))
+    drawn = stroke(Sketch(), np.stack([np.cos(turn), np.sin(turn)], axis=1)).sketch
+    view(stroke(drawn, np.stack([np.linspace(-0.5, 0.5, 20), np.full(20, 0.9)], axis=1)).sketch.curves[0])
 
 
 def _last_address(store: Path) -> tuple[int, str]:

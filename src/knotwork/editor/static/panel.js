@@ -20,7 +20,8 @@ export class Panel {
     $("tolerance").oninput = () => this.preview();
     $("tolerance").onchange = () => this.preview();
     $("reduce").onclick = () => app.do({ do: "reduce", curve: app.selected, tolerance: this.tolerance() });
-    $("reduce-region").onclick = () => this.reduceRegion();
+    $("reduce-region").onclick = () => app.do({ do: "reduce", curve: app.selected, tolerance: this.tolerance(), region: this.region() });
+    $("balance").onclick = () => app.do({ do: "balance", curve: app.selected, region: this.region() });
     $("table-open").onclick = () => this.table();
     for (const box of document.querySelectorAll("[data-show]")) /** @type {HTMLInputElement} */ (box).onchange = () => { app.look(); app.show(); };
     const kinds = { svg: "SVG", json: "JSON", dxf: "DXF", npz: "NPZ", csv: "CSV", py: "Python" };
@@ -45,7 +46,8 @@ export class Panel {
     $("close").textContent = curve.closed ? "Open" : "Close";
     const chosen = app.vertices.size ? `, ${app.vertices.size} chosen` : "";
     $("numbers").textContent = `${curve.points.length} vertices, ${new Set(curve.knots).size} different knots${chosen}`;
-    $("reduce-region").disabled = app.vertices.size < 2;
+    $("reduce-region").disabled = $("balance").disabled = app.vertices.size < 2;
+    $("balance").hidden = curve.closed;
     $("tolerance-value").textContent = number(this.tolerance());
     $("reduction").textContent = "";
   }
@@ -79,10 +81,10 @@ export class Panel {
     }
   }
 
-  reduceRegion() {
-    const { app } = this, curve = this.curve();
-    const nodes = [...app.vertices].map((i) => curve.nodes[i]);
-    app.do({ do: "reduce", curve: app.selected, tolerance: this.tolerance(), region: [nodes.reduce((a, b) => Math.min(a, b)), nodes.reduce((a, b) => Math.max(a, b))] });
+  /** The parameters from the first of the selected vertices to the last. */
+  region() {
+    const curve = this.curve(), nodes = [...this.app.vertices].map((i) => curve.nodes[i]);
+    return [nodes.reduce((a, b) => Math.min(a, b)), nodes.reduce((a, b) => Math.max(a, b))];
   }
 
   table() {
