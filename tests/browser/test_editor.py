@@ -205,7 +205,7 @@ def test_a_crowded_region_gets_as_many_parameters_as_its_length_asks_for(sheet, 
     sheet.bring(curve, tmp_path)
     sheet.page.evaluate(
         "app.vertices = new Set([4, 7]), app.panel.fill()"
-    )  # nodes .61667 and .81667, knots about: .5, .9
+    )  # knots about: .5, .9
     if not sheet.page.is_visible("#balance"):
         sheet.page.click("#panel-toggle")
     with sheet.change():
