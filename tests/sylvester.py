@@ -1,8 +1,8 @@
-"""Where two polynomial plane curves meet, by Sylvester's resultant and Sturm's sequences over Fractions.
+"""Where two polynomial plane curves meet, by Sylvester's resultant over whole numbers, whose zeros FLINT isolates.
 
 Independent of hulls, of Bézout's matrix, of Bernstein coefficients and of Descartes' rule.
 
-    python tests/sylvester.py NUMBER
+    python tests/sylvester.py NUMBER [SEED]
 
 checks `kw.intersect` and `kw.zeros` on so many random cases with whole numbers each: none missed, none invented.
 """
@@ -19,99 +19,71 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from flint import arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_mat, fmpz_poly
 
 sys.path.insert(0, str(Path(__file__).parent))
 
 import knotwork as kw
 import oracle
-import sturm
-from sturm import Polynomial
+
+#: bits of the enclosures of zeros; numbers that agree in so many are taken for equal
+ctx.prec = 200
 
 F = Fraction
 Interval = tuple[Fraction, Fraction]
-Curve = list[Polynomial]  # x and y by powers of the parameter
+Curve = list[fmpz_poly]  # x and y by powers of the parameter
 
 
-def determinant(rows: list[list[Fraction]]) -> Fraction:
-    """Return a determinant, by Gauss's elimination."""
-    rows, total = [row[:] for row in rows], F(1)
-    for k in range(len(rows)):
-        pivot = next((i for i in range(k, len(rows)) if rows[i][k]), None)
-        if pivot is None:
-            return F(0)
-        if pivot != k:
-            rows[k], rows[pivot], total = rows[pivot], rows[k], -total
-        total *= rows[k][k]
-        for i in range(k + 1, len(rows)):
-            factor = rows[i][k] / rows[k][k]
-            if factor:
-                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    return total
-
-
-def resultant(a: Curve, b: Curve) -> Polynomial | None:
-    """Return the polynomial in s that is 0 where a(s) is on b: Sylvester's determinant of b_x(t) − x and b_y(t) − y.
+def resultant(a: Curve, b: Curve) -> fmpz_poly | None:
+    """Return a multiple of the polynomial in s that is 0 where a(s) is on b: the determinant of b_x(t) − x, b_y(t) − y.
 
     None if a, or b, is a point or stands still in a coordinate; those have no place here.
     """
-    if any(len(p) < 2 for p in (*a, *b)):
+    if any(p.degree() < 1 for p in (*a, *b)):
         return None
-    n, (p, q) = max(map(len, a)) - 1, (len(b[0]) - 1, len(b[1]) - 1)
+    n, (p, q) = max(c.degree() for c in a), (c.degree() for c in b)
     values = []
-    count = n * max(p, q) + 1
-    for s in range(count):
-        f, g = ([c[0] - sturm.value(d, F(s)), *c[1:]] for c, d in zip(b, a, strict=True))
-        rows = [[F(0)] * k + f[::-1] + [F(0)] * (q - 1 - k) for k in range(q)]
-        rows += [[F(0)] * k + g[::-1] + [F(0)] * (p - 1 - k) for k in range(p)]
-        values.append(determinant(rows))
-    result: Polynomial = [F(0)]
-    for i, y in enumerate(values):  # Lagrange
-        basis = [F(1)]
-        for j in range(count):
-            if j != i:
-                basis = sturm.product(basis, [F(-j, i - j), F(1, i - j)])
-        result = [x + y * z for x, z in itertools.zip_longest(result, basis, fillvalue=F(0))]
-    return sturm.trimmed(result)
+    for s in range(n * max(p, q) + 1):
+        f, g = ([c[k] - (d(s) if k == 0 else 0) for k in reversed(range(len(c)))] for c, d in zip(b, a, strict=True))
+        rows = [[0] * k + f + [0] * (q - 1 - k) for k in range(q)]
+        rows += [[0] * k + g + [0] * (p - 1 - k) for k in range(p)]
+        values.append([fmpq(fmpz_mat(rows).det())])
+    powers = _from_samples(len(values)) * fmpq_mat(values)
+    return fmpq_poly(powers.entries()).numer()
 
 
-def isolated(p: Polynomial) -> list[Interval]:
-    """Return intervals in [0, 1], one for each zero there, low = high where it is at an end."""
-    found = [(x, x) for x in (F(0), F(1)) if sturm.value(p, x) == 0]
-    work = [(F(0), F(1))]
-    while work:
-        low, high = work.pop()
-        inside = sturm.count(p, low, high) - sum(sturm.value(p, x) == 0 for x in (low, high))
-        if inside == 1:
-            found.append((low, high))
-        elif inside:
-            middle = (low + high) / 2
-            if sturm.value(p, middle) == 0:
-                found.append((middle, middle))
-            work += [(low, middle), (middle, high)]
-    return sorted(found)
+@functools.cache
+def _from_samples(count: int) -> fmpq_mat:
+    """Return the matrix that takes values at 0, 1, 2, … to powers."""
+    return fmpq_mat([[fmpq(s) ** k for k in range(count)] for s in range(count)]).inv()
 
 
-def narrowed(p: Polynomial, ends: Interval, width: Fraction) -> Interval:
-    """Return a narrower interval about the only zero inside."""
-    low, high = ends
-    p = sturm.divided(p, sturm.divisor(p, sturm.differentiated(p)))
-    right = sturm.value(p, high) or sturm.value(sturm.differentiated(p), high) * -1
-    while high - low > width:
-        middle = (low + high) / 2
-        y = sturm.value(p, middle)
-        if y == 0:
-            return middle, middle
-        low, high = (low, middle) if (y > 0) == (right > 0) else (middle, high)
-    return low, high
+def roots(p: fmpz_poly) -> list[arb]:
+    """Return enclosures of the real zeros of a polynomial that is not 0, each once."""
+    return [z.real for z, _ in p.complex_roots() if z.imag == 0] if p.degree() > 0 else []
 
 
-def over(p: Polynomial, ends: Interval) -> Interval:
-    """Return bounds on a polynomial over an interval in [0, 1], by Horner's scheme over intervals."""
-    low, high = F(0), F(0)
-    for a in reversed(p):
-        ends_of = [x * y for x in (low, high) for y in ends]
-        low, high = min(ends_of) + a, max(ends_of) + a
-    return low, high
+def fraction(x: arb) -> Fraction:
+    """Return an exact float of FLINT's."""
+    mantissa, exponent = x.man_exp()
+    return F(int(mantissa)) * F(2) ** int(exponent)
+
+
+def between(p: fmpz_poly, root: arb, low: Fraction, high: Fraction) -> bool:
+    """Tell whether an enclosed zero of a polynomial is in [low, high]: at an end, if the polynomial is 0 there."""
+    least, most = fraction(root.lower()), fraction(root.upper())
+
+    def after(x: Fraction) -> bool:
+        return least > x or (most >= x and is_zero(p, x))
+
+    def before(x: Fraction) -> bool:
+        return most < x or (least <= x and is_zero(p, x))
+
+    return after(low) and before(high)
+
+
+def is_zero(p: fmpz_poly, x: Fraction) -> bool:
+    return bool(p(fmpq(x.numerator, x.denominator)) == 0)
 
 
 def meetings(a: Curve, b: Curve) -> list[tuple[Interval, Interval]] | None:
@@ -121,21 +93,12 @@ def meetings(a: Curve, b: Curve) -> list[tuple[Interval, Interval]] | None:
         p = resultant(one, two)
         if not p:
             return None
-        sides.append([(p, ends) for ends in isolated(p)])
+        sides.append([x for x in roots(p) if between(p, x, F(0), F(1))])
     found = []
-    for (p, s), (q, t) in itertools.product(*sides):
-        width = F(1, 4)
-        while width > F(1, 2**64):
-            s, t = narrowed(p, s, width), narrowed(q, t, width)
-            apart = False
-            for f, g in zip(a, b, strict=True):
-                (low, high), (least, most) = over(f, s), over(g, t)
-                apart = apart or low > most or least > high
-            if apart:
-                break
-            width /= 2**10
-        else:
-            found.append((s, t))
+    points = [[[arb_poly(c)(x) for c in curve] for x in side] for curve, side in zip((a, b), sides, strict=True)]
+    for (s, P), (t, Q) in itertools.product(*(zip(*each, strict=True) for each in zip(sides, points, strict=True))):
+        if all(x.overlaps(y) for x, y in zip(P, Q, strict=True)):
+            found.append(tuple((fraction(x.lower()), fraction(x.upper())) for x in (s, t)))
     return found
 
 
@@ -151,9 +114,9 @@ def random_pieces(rng: np.random.Generator, count: int, degree: int, size: int, 
 def in_powers(spline: kw.Spline, k: int) -> Curve:
     """Return piece k over [0, 1] by powers."""
     n = spline.space.degree
-    P = [[F(int(x)) for x in row] for row in spline.coefficients[k * (n + 1) : (k + 1) * (n + 1)].T]
+    P = [[int(x) for x in row] for row in spline.coefficients[k * (n + 1) : (k + 1) * (n + 1)].T]
     return [
-        sturm.trimmed([
+        fmpz_poly([
             math.comb(n, i) * sum((-1) ** (i - j) * math.comb(i, j) * c[j] for j in range(i + 1)) for i in range(n + 1)
         ])
         for c in P
@@ -161,7 +124,7 @@ def in_powers(spline: kw.Spline, k: int) -> Curve:
 
 
 def check(rng: np.random.Generator, count: int, degrees: tuple[int, int], size: int) -> tuple[int, int]:
-    """Check all pairs of so many pieces; return how many pairs that were, and how many meetings they have."""
+    """Check all pairs of so many pieces; return how many of them have boxes that meet, and how many meetings."""
     a, b = (random_pieces(rng, count, n, size, away) for n, away in zip(degrees, (1, -1), strict=True))
     found = kw.intersect(a, b)
     places: dict[tuple[int, int], list[Any]] = {}
@@ -174,7 +137,6 @@ def check(rng: np.random.Generator, count: int, degrees: tuple[int, int], size: 
     pieces = [[in_powers(x, 2 * k) for k in range(count)] for x in (a, b)]
     boxes = [x.coefficients.reshape(count, 2, -1, 2)[:, 0] for x in (a, b)]
     for i, j in itertools.product(range(count), repeat=2):
-        pairs += 1
         here = places.get((i, j), [])
         P, Q = boxes[0][i], boxes[1][j]
         if (P.max(axis=0) < Q.min(axis=0)).any() or (Q.max(axis=0) < P.min(axis=0)).any():
@@ -184,6 +146,7 @@ def check(rng: np.random.Generator, count: int, degrees: tuple[int, int], size: 
         if true is None:
             continue
         assert (i, j) not in runs
+        pairs += 1
         met += len(true)
         for s, t in true:
             assert any(x <= s[1] and s[0] <= y and z <= t[1] and t[0] <= w for x, y, z, w, _ in here), (P, Q, s, t)
@@ -198,49 +161,56 @@ def _knots(n: int, count: int) -> Any:
 
 
 @functools.cache
-def _rows(n: int, count: int) -> list[Any]:
-    """Return, for each interval, the coefficients of powers as combinations of control points."""
+def _rows(n: int, count: int) -> list[fmpq_mat]:
+    """Return, for each interval, the coefficients of powers as combinations of its control points."""
     space = oracle.Definition(kw.SplineSpace(n, _knots(n, count)))
-    return [[space.row(q, lambda p, k=k: p[k]) for k in range(n + 1)] for q in range(n, n + count)]
+    rows = [[space.row(q, lambda p, k=k: p[k])[q - n : q + 1] for k in range(n + 1)] for q in range(n, n + count)]
+    return [fmpq_mat([[fmpq(x.numerator, x.denominator) for x in row] for row in each]) for each in rows]
 
 
-def check_zeros(rng: np.random.Generator, count: int) -> int:
-    """Check the number of zeros of a random function with so many pieces, at most."""
+def check_zeros(rng: np.random.Generator, count: int) -> tuple[int, int]:
+    """Check the zeros of a random function with so many pieces; return how many pieces, and how many zeros."""
     n = int(rng.integers(1, 6))
     size = int(rng.choice([1, 2, 9, 100]))
     c = rng.integers(-size, size + 1, n + count)
     found = kw.zeros(kw.Spline(kw.SplineSpace(n, _knots(n, count)), c.astype(float)))
-    low, high = ([F(x) for x in ends.tolist()] for ends in (found.low, found.high))
+    ends = [(F(x), F(y)) for x, y in zip(found.low.tolist(), found.high.tolist(), strict=True)]
+    total = 0
     for k, rows in enumerate(_rows(n, count)):
         a, b = F(k), F(k + 1)
-        p = sturm.trimmed([sum((x * int(y) for x, y in zip(row, c, strict=True) if x), F(0)) for row in rows])
+        p = fmpq_poly((rows * fmpq_mat([[int(x)] for x in c[k : k + n + 1]])).entries()).numer()
         if not p:
             assert any(x <= a and b <= y for x, y in found.intervals.tolist())
             continue
-        free = not len(found.intervals)
-        mine = [(max(x, a), min(y, b)) for x, y in zip(low, high, strict=True) if x <= b and a <= y]
-        if free:
-            assert sturm.count(p, a, b) == sum(sturm.count(p, x, y) for x, y in mine)
-            assert all(sturm.count(p, x, y) <= 1 for x, y in mine)
-    return count
+        true = [x for x in roots(p) if between(p, x, a, b)]
+        total += len(true)
+        if not len(found.intervals):
+            mine = [(max(x, a), min(y, b)) for x, y in ends if x <= b and a <= y]
+            inside = [[between(p, x, *each) for each in mine] for x in true]
+            assert all(sum(row) >= 1 for row in inside)
+            assert all(sum(column) <= 1 for column in zip(*inside, strict=True))
+    return count, total
 
 
 def main() -> None:
     """Check as many cases as asked for, and tell what was checked."""
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    rng = np.random.default_rng(int(sys.argv[2]) if len(sys.argv) > 2 else 0)
-    start = time.perf_counter()
-    done = 0
-    while done < number:
-        done += check_zeros(rng, 20)
-    print(f"zeros: {done:,} pieces checked in {time.perf_counter() - start:.0f} s", flush=True)
-    start = time.perf_counter()
-    done = met = 0
-    while done < number:
-        degrees = tuple(rng.integers(1, 4, 2).tolist())
-        pairs, more = check(rng, 20, degrees, int(rng.choice([3, 9, 100])))
-        done, met = done + pairs, met + more
-    print(f"intersect: {done:,} pairs with {met:,} meetings checked in {time.perf_counter() - start:.0f} s")
+    seed = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    for name, cases, each in (
+        ("zeros", "pieces", lambda rng: check_zeros(rng, 20)),
+        ("intersect", "pairs whose boxes meet", _check_some),
+    ):
+        rng, start, done, met = np.random.default_rng(seed), time.process_time(), 0, 0
+        while done < number:
+            some, more = each(rng)
+            done, met = done + some, met + more
+        took = time.process_time() - start
+        print(f"{name}: {done:,} {cases}, {met:,} places, none missed or invented; {took:.0f} s", flush=True)
+
+
+def _check_some(rng: np.random.Generator) -> tuple[int, int]:
+    first, second = rng.integers(1, 4, 2).tolist()
+    return check(rng, 20, (first, second), int(rng.choice([3, 9, 100])))
 
 
 if __name__ == "__main__":
