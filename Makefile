@@ -60,7 +60,7 @@ bench-removal: .venv/tested  ## control points that `reduce` leaves, and its tim
 check-removal: .venv/tested  ## bounds of random reductions, worked out again in fractions: make check-removal NUMBER=10000
 	$(BIN)/python tests/removal/again.py $(NUMBER)
 
-check-geometry: .venv/tested  ## zeros and crossings of random splines, counted again by Sturm and Sylvester: make check-geometry NUMBER=100000
+check-geometry: .venv/tested  ## zeros and crossings of random splines, counted again by Sylvester's resultants and FLINT: make check-geometry NUMBER=100000
 	$(BIN)/python tests/sylvester.py $(NUMBER)
 
 methods: .venv/tested  ## race all methods of knot insertion; docs/figures/insertion_study.py draws the result

@@ -1,4 +1,4 @@
-"""Crossings: none missed, none invented, each enclosed, once; counted by Sylvester's resultants and by Sturm."""
+"""Crossings: none missed, none invented, each enclosed, once; counted by Sylvester's resultants and by FLINT."""
 
 from __future__ import annotations
 
