@@ -10,6 +10,7 @@ from click.testing import CliRunner
 import knotwork as kw
 from knotwork.cli import main
 from knotwork.errors import FileError, ParameterError
+from knotwork.files.fonts import cff as cff_module
 from knotwork.files.fonts.lighter import lighter_font
 
 pytest.importorskip("fontTools")
@@ -310,3 +311,48 @@ def test_the_command(font, tmp_path):
     run = CliRunner().invoke(main, ["reduce", str(font), "-t", "1", "--degree", "3"])
     assert run.exit_code == 2
     assert "--tolerance, --keep and --glyphs" in run.output
+
+
+def test_char_strings_share_what_is_left(tmp_path, monkeypatch):
+    """Glyphs that called subroutines share new ones, and all other glyphs draw and hint as before."""
+    cffsubr = pytest.importorskip("cffsubr")
+    names = [".notdef", *(f"a{k}" for k in range(60))]
+    strings = {}
+    for k, name in enumerate(names):
+        pen = T2CharStringPen(600, None)
+        if k:
+            ring(pen, 300, (400, 350), 24)
+            pen.moveTo((0, k))
+            for p in ((0, 200 + k), (40, 200 + 3 * k), (50, k)):
+                pen.lineTo(p)
+            pen.closePath()
+        strings[name] = pen.getCharString()
+        if k > 50:
+            strings[name].program[1:1] = [10, 20 + k, "hstem"]
+    builder = FontBuilder(1000, isTTF=False)
+    builder.setupGlyphOrder(names)
+    builder.setupCharacterMap({0xE000 + k: name for k, name in enumerate(names)})
+    builder.setupCFF("Shared", {}, strings, {})
+    builder.setupHorizontalMetrics(dict.fromkeys(names, (600, 0)))
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupOS2()
+    builder.setupPost()
+    cffsubr.subroutinize(builder.font)
+    builder.save(tmp_path / "a.otf")
+    document = kw.open(tmp_path / "a.otf", glyph=names[1:40])
+    found = lighter_font(document, 1.0)
+    assert found.glyphs[0] == 39
+    assert found.points[1] < found.points[0] / 2
+    data, _ = found.document.bytes()
+    monkeypatch.setattr(cff_module, "_shared", lambda data, found: found)
+    assert len(data) < 0.6 * len(found.document.bytes()[0])
+    (tmp_path / "b.otf").write_bytes(data)
+    before, after = (TTFont(tmp_path / f"{x}.otf") for x in "ab")
+    for font in (before, after):
+        cffsubr.desubroutinize(font)
+    for name in names[40:]:
+        programs = [font["CFF "].cff.topDictIndex[0].CharStrings[name] for font in (before, after)]
+        for each in programs:
+            each.decompile()
+        assert programs[0].program == programs[1].program
+        assert ("hstem" in programs[0].program) == (int(name[1:]) >= 50)

@@ -9,7 +9,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.files.fonts.reading import drawn
-from knotwork.files.fonts.sfnt import font_of, with_tables
+from knotwork.files.fonts.sfnt import font_of, table, with_tables
 from knotwork.files.fonts.truetype import Glyph
 
 #: operators of hints
@@ -67,7 +67,21 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
     if boxes and hasattr(top, "FontBBox"):
         low, high = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
         top.FontBBox = [*map(int, np.floor(low)), *map(int, np.ceil(high))]
-    return with_tables(data, {"CFF ": font["CFF "].compile(font)})
+    found = font["CFF "].compile(font)
+    if len(found) > len(table(data, "CFF ")):
+        found = min(found, _shared(data, found), key=len)
+    return with_tables(data, {"CFF ": found})
+
+
+def _shared(data: bytes, found: bytes) -> bytes:
+    """Return the table CFF with subroutines that its char strings share; as it is where cffsubr is not installed."""
+    try:
+        import cffsubr
+    except ImportError:
+        return found
+    font = font_of(with_tables(data, {"CFF ": found}))
+    cffsubr.subroutinize(font)
+    return bytes(font.getTableData("CFF "))
 
 
 def string(pen: Any, private: Any = None, subroutines: Any = None) -> Any:

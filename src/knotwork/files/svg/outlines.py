@@ -112,6 +112,8 @@ def reach(nets: Array) -> tuple[Array, Array]:
 
 def mapped(nets: Array, place: Affine) -> Array:
     """Return nets under a map of the plane."""
+    if place == IDENTITY:
+        return nets + 0.0  # no zero is negative
     a, b, c, d, e, f = place
     x, y = nets[..., 0], nets[..., 1]
     return np.stack([a * x + c * y + e, b * x + d * y + f], axis=-1)
