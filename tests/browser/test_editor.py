@@ -203,9 +203,7 @@ def test_a_drawing_by_keys_alone(sheet):
 def test_a_crowded_region_gets_as_many_parameters_as_its_length_asks_for(sheet, tmp_path):
     curve = kw.curve(POINTS, 3, KNOTS)
     sheet.bring(curve, tmp_path)
-    sheet.page.evaluate(
-        "app.vertices = new Set([4, 7]), app.panel.fill()"
-    )  # knots about: .5, .9
+    sheet.page.evaluate("app.vertices = new Set([4, 7]), app.panel.fill()")  # knots about: .5, .9
     if not sheet.page.is_visible("#balance"):
         sheet.page.click("#panel-toggle")
     with sheet.change():

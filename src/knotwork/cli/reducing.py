@@ -78,7 +78,7 @@ def reduce(
     are compared unless --distance or --degree say otherwise. An SVG drawing comes back as it was but for its paths,
     which get few segments and the shortest text; a map or a track as it was but for the points of its lines; a table
     stays a table of fewer points. Glyphs of a font get fewer points, in whole units: extrema, corners and lines stay
-    unless --keep names less, quadratic outlines stay quadratic, and hints of glyphs that change go. Other files are
+    unless --keep names less, quadratic outlines stay quadratic, and hints that hold no more go. Other files are
     compared at equal parameters.
 
     \b

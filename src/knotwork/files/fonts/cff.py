@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,9 @@ from knotwork.files.fonts.reading import drawn
 from knotwork.files.fonts.sfnt import font_of, table, with_tables
 from knotwork.files.fonts.truetype import Glyph
 
-#: operators of hints
-HINTS = ("hstem", "vstem", "hstemhm", "vstemhm", "hintmask", "cntrmask")
+#: operators that tell stems, and those whose mask chooses among them from there on
+STEMS, MASKS = ("hstem", "vstem", "hstemhm", "vstemhm"), ("hintmask", "cntrmask")
+_MOVES = ("rmoveto", "hmoveto", "vmoveto")
 
 
 def glyphs_of(font: Any, names: list[str]) -> list[Glyph]:
@@ -28,23 +29,33 @@ def glyphs_of(font: Any, names: list[str]) -> list[Glyph]:
         string.draw(pen)
         if any(what == "addComponent" for what, _ in pen.value) or not pen.value:
             continue
-        hinted = any(each in HINTS for each in string.program if isinstance(each, str)) or _hints_in_subroutines(string)
-        found.append(Glyph(name, drawn(pen.value), hinted, ""))
+        found.append(Glyph(name, drawn(pen.value), _hints(string) is None, ""))
     return found
 
 
-def _hints_in_subroutines(string: Any) -> bool:
-    """Tell whether hints are in subroutines: those that a glyph's own program does not show."""
-    from fontTools.misc.psCharStrings import SimpleT2Decompiler
+def _hints(string: Any) -> list[Any] | None:
+    """Return what a char string tells of its stems before it draws; None if they change along the glyph.
 
-    private = string.private
-    seen = SimpleT2Decompiler(getattr(private, "Subrs", []), string.globalSubrs, private)
-    seen.execute(string)
-    return bool(seen.hintCount)
+    Stems are coordinates and not points, so they hold for other points too.
+    """
+    from fontTools.cffLib.transforms import desubroutinizeCharString
+
+    desubroutinizeCharString(string)
+    program = string.program
+    moves = [k for k, token in enumerate(program) if token in _MOVES]
+    start = moves[0] if moves else len(program)
+    if any(token in MASKS for token in program[start:]):
+        return None
+    told = [k for k, token in enumerate(program[:start]) if token in (*STEMS, *MASKS)]
+    if not told:
+        return []
+    last = told[-1] + (program[told[-1]] in MASKS)  # its bytes follow
+    width = told[0] % 2  # stems are pairs of numbers
+    return list(program[width : last + 1])
 
 
 def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> bytes:
-    """Return the font with some contours of some glyphs replaced, and their hints dropped."""
+    """Return the font with some contours of some glyphs replaced; stems that change along such a glyph are dropped."""
     from fontTools.pens.recordingPen import RecordingPen
     from fontTools.pens.t2CharStringPen import T2CharStringPen
 
@@ -63,7 +74,7 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
         for i, commands in enumerate(_contours(given.value)):
             draw(pen, contours[i]) if i in contours else _replay(pen, commands)
             boxes += [_around(contours[i])] if i in contours else []
-        strings[name] = string(pen, private, old.globalSubrs)
+        strings[name] = string(pen, private, old.globalSubrs, _hints(shown[name]) or ())
     if boxes and hasattr(top, "FontBBox"):
         low, high = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
         top.FontBBox = [*map(int, np.floor(low)), *map(int, np.ceil(high))]
@@ -84,12 +95,14 @@ def _shared(data: bytes, found: bytes) -> bytes:
     return bytes(font.getTableData("CFF "))
 
 
-def string(pen: Any, private: Any = None, subroutines: Any = None) -> Any:
+def string(pen: Any, private: Any = None, subroutines: Any = None, hints: Sequence[Any] = ()) -> Any:
     """Return the char string that a pen drew, short, but with all its points: masters keep the same ones."""
     from fontTools.cffLib.specializer import specializeProgram
 
     found = pen.getCharString(private, subroutines, optimize=False)
     found.program = specializeProgram(found.program, preserveTopology=True, maxstack=48)
+    width = pen._width is not None
+    found.program[width:width] = hints
     return found
 
 
