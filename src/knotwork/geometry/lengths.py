@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
@@ -16,11 +18,13 @@ def increasing(lengths: Array, closed: bool = False, start: float = 0.0) -> Arra
     So breaks differ where points do, even where a length is lost in rounding; those of a period, by what can be
     continued around its seam.
     """
+    t = np.zeros(len(lengths) + 1)
     with np.errstate(over="ignore"):
         if closed:
             lengths = np.maximum(lengths, SHORTEST * lengths.sum())
-        t = start + np.concatenate([[0.0], np.cumsum(lengths)])
-    if not np.isfinite(t[-1]):
+        np.cumsum(lengths, out=t[1:])
+        t = start + t
+    if not math.isfinite(t[-1]) or (t[1:] > t[:-1]).all():
         return t
     for i in np.flatnonzero(t[1:] <= t[:-1]) + 1:
         while i < len(t) and t[i] <= t[i - 1]:

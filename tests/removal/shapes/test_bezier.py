@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from independent import largest_on_path
 
 from knotwork.errors import ParameterError, PointError
+from knotwork.removal.shapes import search
 from knotwork.removal.shapes.bezier import EFFORTS, reduce_bezier
 from knotwork.removal.shapes.certificate import exact_square
 
@@ -228,13 +229,16 @@ def test_powers_of_two_and_exact_shifts_change_nothing():
     assert len(moved.nets) == len(base.nets)
 
 
-def test_many_curves_are_as_one_by_one():
+@pytest.mark.parametrize(("effort", "some"), [("normal", 1), ("normal", 1 << 13), ("best", 50)])
+def test_many_curves_are_as_one_by_one(effort, some, monkeypatch):
+    """However many are searched in one call."""
     ring = coast()
     parts = [edges(ring[i : i + n]) for i, n in ((0, 2), (5, 40), (90, 3), (200, 120))]
     at = np.concatenate([[0], np.cumsum([len(p) for p in parts])])
-    both = reduce_bezier(np.concatenate(parts), at, 2.0)
+    monkeypatch.setattr(search, "SOME", some)
+    both = reduce_bezier(np.concatenate(parts), at, 2.0, effort=effort)
     for i, part in enumerate(parts):
-        alone, _ = one(part, 2.0)
+        alone, _ = one(part, 2.0, effort=effort)
         assert (both.nets[both.at[i] : both.at[i + 1]] == alone.nets).all()
         assert (both.u[both.path[i] : both.path[i + 1]] == alone.u).all()
 

@@ -153,8 +153,13 @@ def test_bound_holds_on_anything(points, tolerance, effort, closed):
 def test_few_points_on_a_coast():
     """About as few as the method is known for."""
     curve = polyline(coast(), closed=True)
-    for tolerance, effort, most in ((2.0, "normal", 354), (5.0, "normal", 146), (2.0, "fast", 365)):
-        found = kw.reduce(curve, tolerance, distance="geometric", effort=effort, crossings="allow")
+    for tolerance, effort, crossings, most in (
+        (2.0, "normal", "allow", 354),
+        (5.0, "normal", "allow", 146),
+        (2.0, "fast", "allow", 365),
+        (5.0, "normal", "none-new", 165),
+    ):
+        found = kw.reduce(curve, tolerance, distance="geometric", effort=effort, crossings=crossings)
         assert len(found.spline.points) <= most
         assert found.bound <= tolerance
         assert (multiplicities(found.spline.space) == 1).all()

@@ -12,11 +12,11 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.bezier import raised
-from knotwork.removal.result import Progress, tell
+from knotwork.removal.result import Progress
 from knotwork.removal.shapes import certificate, corners
 from knotwork.removal.shapes.quadratic import QuadraticSearch
 from knotwork.removal.shapes.samples import counted
-from knotwork.removal.shapes.search import Effort, Found, Search
+from knotwork.removal.shapes.search import Effort, Found, Lot, Search
 
 #: all, where removal is for results of any size
 ALL = 1 << 40
@@ -136,7 +136,7 @@ def reduce_bezier(
 
     Notes
     -----
-    Bounded: see `Search.curve`. Scaling by powers of two and moving the origin exactly change nothing else.
+    Bounded: see `near`. Scaling by powers of two and moving the origin exactly change nothing else.
     """
     given = prepared(nets, at, tolerance, closed, angle, lines, keep, rational)
     how = efforts(effort, crossings)
@@ -268,31 +268,28 @@ def searched(
     given: Curves, efforts: tuple[Effort, ...], degree: int = 3, progress: Progress | None = None
 ) -> list[Found]:
     """Search for pieces near each curve; none where there are none. A long curve is searched part by part."""
-    F, at, unit, rational, target = given.nets, given.at, given.unit, given.rational, given.target()
+    F, at, unit, rational = given.nets, given.at, given.unit, given.rational
     q, d = F.shape[1] - 1, len(unit)
-    parts = [
+    cuts = [
         np.append(np.arange(lo, max(hi - LONG // 2, lo + 1), LONG), hi) for lo, hi in itertools.pairwise(at.tolist())
     ]
-    ends = np.unique(np.concatenate([at, *parts]))
+    parts = np.array([len(c) - 1 for c in cuts], np.int64)
+    own = np.repeat(np.arange(len(parts)), parts)  # the curve of each part
+    ends = np.append(np.concatenate([np.zeros(0, np.int64), *(c[:-1] for c in cuts)]), len(F))
+    sizes = np.diff(ends)
     more = rational or q > degree
-    allowed = ALLOWED * (np.diff(ends) + 4) if more else np.maximum(np.diff(ends) - 1, 0)
+    allowed = np.where(sizes > 0, ALLOWED * (sizes + 4), 0) if more else np.maximum(sizes - 1, 0)
     most = counted(F, ends, 1 / unit, extent(d))
     kind = Search if degree == 3 else QuadraticSearch
     search = kind(most + most // 2 + 64, int(allowed.max(initial=0)), unit, given.metric, q, rational)
-    result = []
-    for i, cuts in enumerate(parts):
-        found: list[Found] = []
-        for lo, hi in itertools.pairwise(cuts.tolist()):
-            room = int(allowed[np.searchsorted(ends, lo)]) if hi > lo else 0
-            hard = given.hard[lo + i : hi + i + 1]
-            part = search.fewest(F[lo:hi], hard, target[i], room, efforts) if room else None
-            if part is None and (len(cuts) == 2 or more):
-                break
-            found.append(part or as_pieces(F[lo:hi], degree))
-            tell(progress, hi / len(F))
-        else:
-            whole = _chained(found, F.shape[1:], cuts - cuts[0], degree)
-            if more or len(whole.G) < cuts[-1] - cuts[0]:
+    lot = Lot(F, ends, given.hard, ends[:-1] + own, given.target()[own], allowed)
+    found, result, i = search.fewest(lot, efforts, progress), [], 0
+    for c in cuts:
+        some, i = found[i : i + len(c) - 1], i + len(c) - 1
+        if any(some) and (len(some) == 1 or all(some) or not more):
+            each = [f or as_pieces(F[lo:hi], degree) for f, (lo, hi) in zip(some, itertools.pairwise(c), strict=True)]
+            whole = _chained(each, F.shape[1:], c - c[0], degree)
+            if more or len(whole.G) < c[-1] - c[0]:
                 result.append(whole)
                 continue
         result.append(Found(np.zeros((0, degree + 1, F.shape[2])), np.zeros(0), np.zeros(0), 0.0))

@@ -33,9 +33,12 @@ class Features(NamedTuple):
 def shape_features(curve: Spline, pieces: Array, keep: Any, ends: Any, closed: bool) -> Features:
     """Return what stays of a curve with the given Bézier nets."""
     angle: float | None = None
-    lines, count, breaks = False, len(pieces), curve.space.breaks
+    lines, count = False, len(pieces)
     joints: list[Array] = [_at_ends(curve, count, ends, closed)]
-    for each in [keep] if isinstance(keep, str) else list(keep if keep is not None else ()):
+    if keep is None:
+        return Features(angle, lines, joints[0][(joints[0] > 0) & (joints[0] < count)])
+    breaks = curve.space.breaks
+    for each in [keep] if isinstance(keep, str) else list(keep):
         if not isinstance(each, str):
             joints.append(_between(curve, breaks, each))
         elif each == "corners":

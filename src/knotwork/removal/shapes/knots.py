@@ -117,7 +117,7 @@ def fitted(G, k0, k1, S, ja, jb, room, steps):
 
 
 @kernel(inline=False)
-def thinned(G, S, last, count, room, reach, steps, simple):
+def thinned(G, S, last, count, room, effort):
     """Take out knots from the first to the last one, as long as the curve stays near; return how many pieces are left.
 
     Knots that were tried in vain are passed over until one nearby goes. Bounded: one fit a copy of a knot.
@@ -129,7 +129,7 @@ def thinned(G, S, last, count, room, reach, steps, simple):
         if frame.fixed[k] or frame.tried[k]:
             k += 1
             continue
-        k0, k1 = window_around(frame, k - 1, k, reach, count)
+        k0, k1 = window_around(frame, k - 1, k, effort.reach, count)
         ja, jb = samples_around(S.u, last, j, k0, k1)
         j = ja
         kept_frame(G, S, k0, k1, ja, jb, room, 1)
@@ -137,11 +137,11 @@ def thinned(G, S, last, count, room, reach, steps, simple):
             frame.lengths[i], frame.counts[i] = h[i], times[i]
         merged = loosened(S, k, k0, k1, ja, jb, count, room)
         netted(G, k0, k1 - merged, room)
-        worst = fitted(G, k0, k1 - merged, S, ja, jb, room, steps)
-        if worst <= TARGET and not (simple and tangled(G, S, k0, k1 - merged, ja, jb, room)):
+        worst = fitted(G, k0, k1 - merged, S, ja, jb, room, effort.steps)
+        if worst <= TARGET and not (effort.simple and tangled(G, S, k0, k1 - merged, ja, jb, room)):
             closed_up(G, S, last, k, k1, jb, count, merged, room)
             count -= merged
-            for i in range(max(k - reach, 1), min(k + reach, count)):
+            for i in range(max(k - effort.reach, 1), min(k + effort.reach, count)):
                 frame.tried[i] = 0
         else:
             for i in range(k - 1, count + 1):
@@ -187,22 +187,23 @@ def tightened(G, S, last, k, count, room):
 
 
 @kernel(inline=False)
-def mended(G, S, last, count, most, room, reach, steps):
+def mended(G, S, last, count, most, places, room, effort):
     """Fit the pieces that are too far from their samples again, or put a knot into them; return how many there are.
 
-    Given up, with most + 1, when there are more than `most`. Near the start of a closed curve no knot is put in.
+    Given up, with most + 1, when there are more than `most`. All pieces are looked at, whatever
+    the `places`. Near the start of a closed curve no knot is put in.
     """
     frame, around = room.frame, 1 if room.frame.times[0] < DEGREE else 0
     k, j = around, 0
     while k < count - around:
         ja, jb = samples_around(S.u, last, j, k, k)
         j = ja
-        worst = measured(G, k, k, S, ja, jb, room, 2, 4, math.inf, FAIR)[1]
+        worst = measured(G, k, k, S, ja, jb, room, 0, 0, math.inf, 0.0)[1]
         if worst > TARGET:
-            k0, k1 = window_around(frame, k, k, reach, count)
+            k0, k1 = window_around(frame, k, k, effort.reach, count)
             ja, jb = samples_around(S.u, last, j, k0, k1)
             kept_frame(G, S, k0, k1, ja, jb, room, 1)
-            if fitted(G, k0, k1, S, ja, jb, room, steps) > TARGET:
+            if fitted(G, k0, k1, S, ja, jb, room, effort.steps) > TARGET:
                 restored_frame(G, S, k0, k1, ja, jb, room, 1)
                 if around and not DEGREE < k < count - DEGREE - 1:  # a knot here would be felt across the start
                     k += 1
@@ -215,9 +216,9 @@ def mended(G, S, last, count, most, room, reach, steps):
                     k += 1
                 tightened(G, S, last, k, count, room)
                 count += 1
-                k0, k1 = window_around(frame, k, k + 1, reach, count)
+                k0, k1 = window_around(frame, k, k + 1, effort.reach, count)
                 ja, jb = samples_around(S.u, last, ja, k0, k1)
-                fitted(G, k0, k1, S, ja, jb, room, steps)
+                fitted(G, k0, k1, S, ja, jb, room, effort.steps)
                 k = k0
                 continue
         k += 1

@@ -29,6 +29,8 @@ def nets(spline: Spline, rational: bool) -> tuple[Array, Array]:
     cost = 3 * ROUNDING if exact else cost
     if rational and result[..., -1].max() >= WEIGHTS * result[..., -1].min():
         raise PointError("weights that differ by a factor of 2²⁰⁰ or more: expected less")
+    if cost == 0:
+        return result, np.zeros(result.shape[2] - rational)
     return result, cost * sizes(result, rational) * (2 if rational else 1)
 
 
@@ -65,14 +67,28 @@ def is_closed(nets: Array, rational: bool) -> bool:
 def _nets(curve: Spline, rational: bool) -> Array:
     if rational and not curve.rational:
         curve = Spline.trusted(curve.spaces, curve.homogeneous, True)
+    if _in_pieces(curve.space):
+        n, c = curve.space.degree, curve.coefficients
+        result: Array = c[n * np.arange((len(c) - 1) // n)[:, None] + np.arange(n + 1)]
+        return result
     return np.ascontiguousarray(to_bezier(curve)[0])
+
+
+def _in_pieces(space: SplineSpace) -> bool:
+    """Tell whether the control points are those of the pieces: each knot inside counts as often as the degree."""
+    n, t = space.degree, space.knots
+    if space.periodic or n == 0 or (len(t) - 2) % n or t[0] != t[1] or t[-1] != t[-2]:
+        return False
+    rows = t[1:-1].reshape(-1, n)
+    return bool((rows[:, 0] == rows[:, -1]).all() and (rows[1:, 0] > rows[:-1, 0]).all())
 
 
 def _cost(space: SplineSpace) -> float:
     """Return the error of float nets relative to the largest coordinate."""
-    t, n = space.unrolled.knots, space.degree
-    if n <= 1 or np.array_equal(space.knots, SplineSpace.bezier(n, space.breaks).knots):  # points are copied
+    n = space.degree
+    if n <= 1 or _in_pieces(space):  # points are copied
         return 0.0
+    t = space.unrolled.knots
     gaps = np.diff(t)
     moved = 4 * float(np.abs(t).max()) / float(gaps[gaps > 0].min()) if space.periodic else 0.0
     return n * (8 + moved) * ROUNDING * (1 + 2.0**-20)

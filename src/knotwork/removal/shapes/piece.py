@@ -101,7 +101,7 @@ def fitted_piece(G, k, S, ja, jb, room, tied, steps):
         before = worst
         least_squares(G, k, S, ja, jb, room, tied)
         rematched(G, k, k, S, ja, jb, room)
-        worst = measured(G, k, k, S, ja, jb, room, 0, 4, math.inf, FAIR)[1]
+        worst = measured(G, k, k, S, ja, jb, room, 0, 0, math.inf, 0.0)[1]
         if worst <= TARGET:
             return worst
         if sweep >= FEW and (worst < FAR or worst > CLOSER * before):

@@ -13,7 +13,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.frame import measured_frame
 from knotwork.removal.shapes.room import frame
-from knotwork.removal.shapes.search import Search, Steps
+from knotwork.removal.shapes.search import Search, near_all
 
 #: E: the control points of a parabola, raised
 RAISED = ((1, 0, 0, 0), (1 / 3, 2 / 3, 0, 0), (0, 2 / 3, 1 / 3, 0), (0, 0, 1, 0))
@@ -83,11 +83,11 @@ class QuadraticSearch(Search):
     """Working space for quadratic pieces near curves."""
 
     degree = 2
-    steps = Steps(*(step.variant(**_names) for step in Search.steps))
+    near_all = near_all.variant(**_names)
 
     def __init__(self, count: int, pieces: int, unit: Array, metric: Array, q: int, rational: bool) -> None:
         super().__init__(count, pieces, unit, metric, q, rational)
         E = frame(pieces + 8, len(unit))
         E.E[:] = RAISED
         E.at[:] = 2 * np.arange(len(E.at))
-        self.room = self.room._replace(frame=E)
+        self.space = self.space._replace(room=self.space.room._replace(frame=E))

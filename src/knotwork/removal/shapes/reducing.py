@@ -26,6 +26,9 @@ from knotwork.removal.tolerance import Tolerance
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
+#: part of the tolerance that counts as lost if anything does
+LEAST = 2.0**-30
+
 
 class Wanted(NamedTuple):
     """What is asked for, beside the form and the tolerance: see `reduce`."""
@@ -93,8 +96,14 @@ class Shape(NamedTuple):
 
     @property
     def reach(self) -> Any:
-        """What is left of the tolerance between the nets and what is found: twice how far they may be off is not."""
-        return np.maximum(self.allowed - 2 * self.slack, 0)
+        """What is left of the tolerance between the nets and what is found: twice how far they may be off is not.
+
+        That is rounded up to a power of two, from some part of the tolerance on: so many curves have the same reach.
+        """
+        if not self.off.any():
+            return self.allowed
+        lost = np.where(np.asarray(self.slack) > 0, np.ldexp(1.0, np.frexp(2 * self.slack)[1]), 0)
+        return np.maximum(self.allowed - np.where(lost > 0, np.maximum(lost, self.allowed * LEAST), 0), 0)
 
     @property
     def slack(self) -> Any:
@@ -123,7 +132,7 @@ def _bezier(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     """Return pieces of degree 2 or 3 that join."""
     found, closed = _pieces([shape], degree, wanted), shape.closed
     low = degree * _lower_bound(shape, degree) + (not closed)
-    spline = _joined(shape, found, 0)
+    spline = _joined(shape, found, 0, _lengths(found.nets, shape.curve.rational))
     if spline is None:
         return _itself(shape, wanted.effort, low)
     matching = Matching(found.s + found.start[0], found.u, closed)
@@ -142,14 +151,23 @@ def _pieces(shapes: Sequence[Shape], degree: int, wanted: Wanted) -> Pieces:
     )  # fmt: skip
 
 
-def _joined(shape: Shape, found: Pieces, k: int) -> Spline | None:
-    """Return the curve of the pieces that were found for shape k; None if it is its own answer."""
-    own, curve = found.nets[found.at[k] : found.at[k + 1]], shape.curve
-    if not len(own):
+def _lengths(nets: Array, rational: bool) -> Array:
+    """Return about how long pieces are, between chord and polygon."""
+    new = nets[..., :-1] / nets[..., -1:] if rational else nets
+    chord = np.sqrt(((new[:, -1] - new[:, 0]) ** 2).sum(axis=1))
+    polygon = np.sqrt((np.diff(new, axis=1) ** 2).sum(axis=2)).sum(axis=1)
+    result: Array = chord / 2 + polygon / 2
+    return result
+
+
+def _joined(shape: Shape, found: Pieces, k: int, lengths: Array) -> Spline | None:
+    """Return the curve of the pieces that were found for shape k, given all their lengths; None if it is itself."""
+    lo, hi = int(found.at[k]), int(found.at[k + 1])
+    if lo == hi:
         return None
-    new = own[..., :-1] / own[..., -1:] if curve.rational else own
-    t = breaks_by_length(new, curve.space.domain, shape.closed)
-    return joined(new, t, shape.closed and curve.space.periodic)
+    new, curve = found.nets[lo:hi], shape.curve
+    t = over_domain(lengths[lo:hi], curve.space.domain, shape.closed)
+    return joined(new[..., :-1] / new[..., -1:] if curve.rational else new, t, shape.closed and curve.space.periodic)
 
 
 def _bound(shape: Shape, found: Pieces, k: int) -> Any:
@@ -182,8 +200,9 @@ def reduce_shapes(
     found: dict[int, Reduction] = {}
     for some in alike.values():
         result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
+        lengths = _lengths(result.nets, shapes[some[0]].curve.rational)
         for k, i in enumerate(some):
-            made = _joined(shapes[i], result, k)
+            made = _joined(shapes[i], result, k, lengths)
             bound = 0.0 if made is None else _bound(shapes[i], result, k)
             found[i] = Reduction(shapes[i].curve if made is None else made, bound, "geometric", effort=effort)
     return [found[i] for i in range(len(curves))]
@@ -261,9 +280,7 @@ def _around(found: Smooth, pieces: int, new: int) -> tuple[Array, Array]:
 
 def breaks_by_length(new: Array, domain: Sequence[Any], closed: bool) -> Array:
     """Return breaks over a domain that follow the lengths of pieces."""
-    chord = np.sqrt(((new[:, -1] - new[:, 0]) ** 2).sum(axis=1))
-    polygon = np.sqrt((np.diff(new, axis=1) ** 2).sum(axis=2)).sum(axis=1)
-    return over_domain(chord / 2 + polygon / 2, domain, closed)
+    return over_domain(_lengths(new, False), domain, closed)
 
 
 def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.crossings import tangled
 from knotwork.removal.shapes.piece import least_squares
@@ -63,7 +65,7 @@ def removed(G, S, last, count, room, simple):
         kept(G, S, k0, k1, ja, jb, room, 2)
         halfway(G, S, k, k1, ja, jb, room)
         rematched(G, k0, k1 - 1, S, ja, jb, room)
-        worst = measured(G, k0, k1 - 1, S, ja, jb, room, 0, 4, 1e300, FAIR)[1]
+        worst = measured(G, k0, k1 - 1, S, ja, jb, room, 0, 0, math.inf, 0.0)[1]
         if TARGET < worst < HOPELESS:
             worst = fitted_window(G, k0, k1 - 1, S, ja, jb, room, 1, STEPS, FAIR)
         if worst <= TARGET and not (simple and tangled(G, S, k0, k1 - 1, ja, jb, room)):

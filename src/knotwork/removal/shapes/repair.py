@@ -149,7 +149,7 @@ def chain(S, last, j, k, reach):
 
 
 @kernel(inline=False)
-def repaired(G, S, last, count, most, places, room, steps):
+def repaired(G, S, last, count, most, places, room, effort):
     """Fit the pieces at some places of f again, or split them; return how many pieces there are.
 
     Given up, with most + 1, when there are more pieces than `most`.
@@ -175,7 +175,7 @@ def repaired(G, S, last, count, most, places, room, steps):
                 continue
             k0, k1, ja, jb = chain(S, last, j, k, reach)
             kept(G, S, k0, k1, ja, jb, room, 2)
-            worst = fitted_window(G, k0, k1, S, ja, jb, room, 1, steps, FAIR)
+            worst = fitted_window(G, k0, k1, S, ja, jb, room, 1, effort.steps, FAIR)
             good = worst <= TARGET
             if not good:
                 restored(G, S, k0, k1, ja, jb, room, 2)
@@ -183,7 +183,7 @@ def repaired(G, S, last, count, most, places, room, steps):
         if not good:
             if count >= most:
                 return most + 1
-            split(G, S, last, j, k, count, room, steps)
+            split(G, S, last, j, k, count, room, effort.steps)
             count += 1
             done = k + 1
     return count

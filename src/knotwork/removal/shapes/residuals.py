@@ -9,9 +9,11 @@ import math
 
 from knotwork.arithmetic.kernel import kernel
 
-#: a gap that g crosses over a longer way than this has nodes in it, one a unit and at most that many
+#: a gap that g crosses over a longer way than this has nodes in it, one a unit; at most that many, and one more than
+#: that many times the part of a piece that the gap takes: in a small part of it, a cubic cannot turn often
 LONG = 0.6
 NODES = 6
+DENSE = 16
 #: squares of distances below which a row says nothing about the p-norm, for p = 8 and p = 20
 SLIGHT = 0.03
 SLIGHT_SHARP = 0.3
@@ -27,44 +29,86 @@ def bernstein(t, B):
 
 
 @kernel
-def row(G, k, at, room, state, half):
-    """Add the distance room.d, at Bernstein values room.B of piece k, to the equations; return e² and its part of Φ.
+def row(k, room, half):
+    """Add the distance room.d, at Bernstein values room.B, to the sums of piece k; return e² and its part of Φ.
 
     Φ = Σ e^P, P = 2 half, is a sum of squares ρ = e^half. With d = e n the Gauss-Newton row is half e^(half-1) nᵀB:
-    no root and no quotient is left in the equations. P = 2 is plain least squares, of points at fixed parameters.
+    no root and no quotient is left in the equations. P = 2 is plain least squares, of points at fixed parameters; with
+    half = 0 only distances are asked for.
     """
-    d, B, D, A, b = room.d, room.B, room.D, room.A, room.b
+    d, D, M, R = room.d, room.D, room.moments, room.slopes
     q = 0.0
     for c in range(len(D)):
         q += d[c] * d[c]
+    if half == 0:
+        return q, 0.0
     q2 = q * q
     if half == 1:
-        for i in range(4):
-            for l in range(i + 1):
-                for c in range(len(D)):
-                    A[state, (at + i) * len(D) + c, (i - l) * len(D)] += B[i] * B[l]
-            for c in range(len(D)):
-                b[state, (at + i) * len(D) + c] += B[i] * d[c]
-        return q, q
-    if half == 4:
+        h, slope, phi, slight = 1.0, 1.0, q, False
+    elif half == 4:
         h, slope, phi, slight = 16 * q2, 4 * q2 * q, q2 * q2, q < SLIGHT
     else:
         q8 = q2 * q2 * q2 * q2
         h, slope, phi, slight = 100 * q8, 10 * q8 * q, q8 * q2, q < SLIGHT_SHARP
-    if not slight:
+    if slight:
+        return q, phi
+    # one statement each: so the compiler does several at once
+    b0, b1, b2, b3 = room.B[0], room.B[1], room.B[2], room.B[3]
+    p0, p1, p2, p3, p4, p5, p6 = b0 * b0, b0 * b1, b1 * b1, b1 * b2, b2 * b2, b2 * b3, b3 * b3
+    for c in range(len(D)):
+        v = slope * d[c]
+        R[k, c, 0] += v * b0
+        R[k, c, 1] += v * b1
+        R[k, c, 2] += v * b2
+        R[k, c, 3] += v * b3
+        for e in range(c + 1):
+            v = h * d[c] * d[e] if half > 1 else (1.0 if c == e else 0.0)
+            M[k, c, e, 0] += v * p0
+            M[k, c, e, 1] += v * p1
+            M[k, c, e, 2] += v * p2
+            M[k, c, e, 3] += v * p3
+            M[k, c, e, 4] += v * p4
+            M[k, c, e, 5] += v * p5
+            M[k, c, e, 6] += v * p6
+    return q, phi
+
+
+@kernel(inline=False)
+def cleared(count, room, state):
+    """Begin the sums of so many pieces, and the normal equations."""
+    for k in range(count):
+        for c in range(len(room.D)):
+            for i in range(4):
+                room.slopes[k, c, i] = 0
+            for e in range(c + 1):
+                for m in range(7):
+                    room.moments[k, c, e, m] = 0
+    for i in range((3 * count + 1) * len(room.D)):
+        room.b[state, i] = 0
+        for o in range(4 * len(room.D)):
+            room.A[state, i, o] = 0
+
+
+@kernel(inline=False)
+def gathered(count, room, state):
+    """Add the sums of so many pieces to the normal equations.
+
+    B_i B_l is the sixth-degree polynomial i + l but for a factor, and so 1, 1, 1/3, 1/9 times the product that was
+    summed, by how far i and l are apart.
+    """
+    D, A, b = room.D, room.A, room.b
+    for k in range(count):
         for i in range(4):
-            first = (at + i) * len(D)
-            by = h * B[i]
+            first = (3 * k + i) * len(D)
             for c in range(len(D)):
-                b[state, first + c] += slope * B[i] * d[c]
+                b[state, first + c] += room.slopes[k, c, i]
             for l in range(i + 1):
-                both = by * B[l]
+                factor = 1.0 if i - l < 2 else (1 / 3 if i - l == 2 else 1 / 9)
                 for c in range(len(D)):
-                    v = both * d[c]
                     for e in range(len(D)):
                         if l < i or e <= c:
-                            A[state, first + c, (i - l) * len(D) + c - e] += v * d[e]
-    return q, phi
+                            value = room.moments[k, max(c, e), min(c, e), i + l]
+                            A[state, first + c, (i - l) * len(D) + c - e] += factor * value
 
 
 @kernel(inline=False)
@@ -138,18 +182,15 @@ def node(G, k, t, S, j, along, sample, room):
 def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
     """Write the normal equations of Φ over samples ja+1 … jb, and over nodes of g between them; return Φ and max e.
 
-    The window may begin between samples ja and ja+1, and end between jb-1 and jb.
+    The window may begin between samples ja and ja+1, and end between jb-1 and jb. With half = 0 only max e is found.
     Given up, with an infinite maximum, as soon as Φ is above the limit.
     """
-    u, D = S.u, room.D
-    size = (3 * (k1 - k0) + 4) * len(D)
-    for i in range(size):
-        room.b[state, i] = 0
-        for o in range(4 * len(D)):
-            room.A[state, i, o] = 0
+    u = S.u
+    phi, worst = 0.0, 0.0
     speeds(G, k0, k1, room)
-    phi = fairness(G, k0, k1, room, state, fair)
-    worst = 0.0
+    if half > 0:
+        cleared(k1 - k0 + 1, room, state)
+        phi = fairness(G, k0, k1, room, state, fair)
     k = k0
     for j in range(ja, jb):
         a, b = max(u[j], k0), min(u[j + 1], k1 + 1)
@@ -159,7 +200,8 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
             way = (k + 1 - a) * room.speed[k - k0] + (b - last) * room.speed[last - k0]
             for i in range(k + 1, last):
                 way += room.speed[i - k0]
-        count = 0 if way <= LONG else (NODES if not way < NODES else 1 + int(way))
+        most = min(NODES, 1 + int(DENSE * (b - a)))
+        count = 0 if way <= LONG else (most if not way < most else 1 + int(way))
         along, i = 0.0, 1
         while True:  # nodes, joints and the sample at the end, in order
             at = a + (b - a) * i / (count + 1) if i <= count else b
@@ -176,7 +218,7 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
             else:
                 break
             along = node(G, k, t, S, j, along, sample, room)
-            q, part = row(G, k, 3 * (k - k0), room, state, half)
+            q, part = row(k - k0, room, half)
             phi += part
             worst = max(worst, q)
             if sample:
@@ -187,6 +229,8 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
                 i += 1
         if phi > limit:
             return phi, math.inf
+    if half > 0:
+        gathered(k1 - k0 + 1, room, state)
     return phi, math.sqrt(worst)
 
 

@@ -58,6 +58,10 @@ class Room(NamedTuple):
     #: the normal equations of two states, lower band, and their right-hand sides; a third one of a frame's pieces
     A: Array
     b: Array
+    #: what the normal equations are made of, for each piece of a window: sums with seven products of Bernstein values
+    #: (component, component, product), and with each of the four (component, value)
+    moments: Array
+    slopes: Array
     #: Cholesky factor and solution
     L: Array
     x: Array
@@ -106,7 +110,8 @@ def room(count: int, d: int, degree: int = 3, pieces: int = 0) -> Room:
     window = max(pieces, WINDOW)
     unknowns, band = (3 * window + 1) * d, 4 * d
     return Room(
-        np.zeros((3, unknowns, band)), np.zeros((3, unknowns)), np.zeros((unknowns, band)), np.zeros(unknowns),
+        np.zeros((3, unknowns, band)), np.zeros((3, unknowns)), np.zeros((window, d, d, 7)), np.zeros((window, d, 4)),
+        np.zeros((unknowns, band)), np.zeros(unknowns),
         np.zeros((3, window, 4, d)), np.zeros((3, count)), np.zeros(count), np.zeros(count, np.int64),
         np.zeros(window + 1), np.zeros(d), np.zeros((4, d)), np.zeros(4), np.zeros((3, 3)), np.zeros((3, d)),
         np.zeros((degree + 1, d + 1)), np.zeros((512, d)), frame(pieces, d), extent(d),

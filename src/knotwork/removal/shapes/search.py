@@ -1,24 +1,27 @@
-"""Few cubics near one curve: samples, the greedy search, the certificate, repair, in turn."""
+"""Few cubics near each of many curves: samples, the greedy search, the certificate, repair, in turn."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.arithmetic.kernel import Kernel, kernel
-from knotwork.removal.shapes import certificate
+from knotwork.arithmetic.kernel import kernel
+from knotwork.removal.result import Progress, part_of, tell
+from knotwork.removal.shapes import certificate, matching
 from knotwork.removal.shapes.greedy import as_piece, greedy, whole
 from knotwork.removal.shapes.matching import Pair, path_square
 from knotwork.removal.shapes.rematching import refined
 from knotwork.removal.shapes.removing import removed
-from knotwork.removal.shapes.repair import forced, interpolated, repaired
-from knotwork.removal.shapes.room import room, samples
+from knotwork.removal.shapes.repair import FORCED, forced, interpolated, repaired
+from knotwork.removal.shapes.room import Room, Samples, room, samples
 from knotwork.removal.shapes.samples import finely, merged, point
 
 #: how often a curve is begun anew, with what was learned about its samples
 ATTEMPTS = 3
+#: pieces of curves that are searched in one call, about
+SOME = 1 << 13
 #: part of its length by which a line may be off, for the rounding of its points
 LEVEL = 1e-9
 
@@ -39,6 +42,8 @@ class Effort(NamedTuple):
     backward: bool
     #: whether new self-crossings are avoided
     simple: bool
+    #: pieces of a smooth curve on each side of a knot that are fitted again
+    reach: int = 0
 
 
 class Found(NamedTuple):
@@ -48,6 +53,69 @@ class Found(NamedTuple):
     u: Array
     s: Array
     square: float
+
+
+class Lot(NamedTuple):
+    """Curves to be searched, one behind the other."""
+
+    F: Array
+    #: curve i has nets at[i] … at[i + 1] - 1, and flags from hard_at[i] on: whether each joint stays
+    at: Array
+    hard: Array
+    hard_at: Array
+    #: the square of the largest distance that is allowed to each, and how many pieces
+    target: Array
+    most: Array
+
+
+class Task(NamedTuple):
+    """One curve of them."""
+
+    F: Array
+    hard: Array
+    target: float
+    most: int
+
+
+class Kind(NamedTuple):
+    """What all curves of a search have in common: see `Curves` and `Pair`."""
+
+    unit: Array
+    per: Array
+    metric: Array
+    product: Array
+    D: Any
+    W: Any
+
+
+class Space(NamedTuple):
+    """Working space of a search, used over and over."""
+
+    fine: Samples
+    samples: Samples
+    room: Room
+    matching: matching.Room
+    #: pieces in units of the tolerance, and in those of f
+    G: Array
+    out: Array
+    #: the path, and where it fails: in each of its steps, and all places
+    u: Array
+    s: Array
+    failing: Array
+    places: Array
+    #: the path as it was before repair
+    before: Array
+
+
+class Answers(NamedTuple):
+    """What is found, one behind the other: pieces, paths, the squares they prove, and where those of each curve end."""
+
+    G: Array
+    u: Array
+    s: Array
+    square: Array
+    pieces: Array
+    nodes: Array
 
 
 @kernel
@@ -118,117 +186,173 @@ def written(F, G, count, S, last, unit, out, room):
         before = j
 
 
-class Steps(NamedTuple):
-    """The kernels of a search."""
+@kernel(inline=False)
+def certified(task, kind, space, end, last, count, effort):
+    """Prove what the search has found, repairing it where that fails.
 
-    greedy: Kernel
-    removed: Kernel
-    repaired: Kernel
-    written: Kernel
+    Returns how many pieces there are; how many nodes the path has that proves them, 0 if none does, -1 if it is too
+    long for its space; and the last sample and the last fine one, 0 if there is no space for more of them.
+    """
+    S, G, room = space.samples, space.G, space.room
+    for _ in range(effort.rounds):
+        written(task.F, G, count, S, last, kind.unit, space.out, room)
+        pair = Pair(task.F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+        u, s = S.u[: last + 1], S.s[: last + 1]
+        nodes = refined(pair, space.matching, task.target, u, s, space.u, space.s, space.failing)
+        if nodes == 0:
+            return count, -1, last, end
+        failing = 0
+        for j in range(last):
+            if space.failing[j] >= 0:
+                space.places[failing] = (max(space.failing[j], s[j]) + s[j + 1]) / 2
+                failing += 1
+        if failing == 0:
+            return count, nodes, last, end
+        old = last + 1
+        for j in range(old):
+            space.before[0, j], space.before[1, j] = u[j], s[j]
+        end = forced(task.F, kind.per, space.fine, end, S, last, space.failing, room)
+        if end == 0:
+            return count, 0, last, 0
+        last = merged(space.fine, end, task.F.shape[1] == 2, S, room)
+        interpolated(S, last, space.before[1, :old], space.before[0, :old])
+        count = repaired(G, S, last, count, task.most, space.places[:failing], room, effort)
+        if count > task.most:
+            return count, 0, last, end
+    return count, 0, last, end
+
+
+@kernel(inline=False)
+def near(task, kind, space, effort):
+    """Find pieces near a curve; return how many, and the nodes of the path that proves them: see `certified`.
+
+    Bounded: at most about log n tries a piece, effort.steps steps a fit, effort.rounds rounds of repair, and all that
+    ATTEMPTS times.
+    """
+    F, S, fine, room = task.F, space.samples, space.fine, space.room
+    end = finely(F, kind.per, task.hard, fine, room)
+    for attempt in range(ATTEMPTS):
+        if attempt == ATTEMPTS - 1:  # the last time with all samples
+            for j in range(1, end):
+                if fine.hard[j] == 0:
+                    fine.hard[j] = FORCED
+        last = merged(fine, end, F.shape[1] == 2, S, room)
+        count = greedy(F, kind.per, space.G, S, last, room, effort, task.most)
+        if count > task.most:
+            return 0, 0
+        if 1 < count <= (effort.few if F.shape[1] == 2 else effort.few_curved):
+            count = removed(space.G, S, last, count, room, effort.simple)
+        count, nodes, last, end = certified(task, kind, space, end, last, count, effort)
+        if nodes != 0:
+            return count, nodes
+        if end == 0:
+            return 0, 0
+    return 0, 0
+
+
+@kernel(inline=False)
+def near_all(lot, first, end, kind, space, effort, found):
+    """Find pieces near curves first … end - 1, and write them down; return how far that went before space ran out."""
+    pieces, nodes = 0, 0
+    for i in range(first, end):
+        F = lot.F[lot.at[i] : lot.at[i + 1]]
+        hard = lot.hard[lot.hard_at[i] : lot.hard_at[i] + len(F) + 1]
+        count, more = 0, 0
+        if lot.most[i] > 0:
+            count, more = near(Task(F, hard, lot.target[i], lot.most[i]), kind, space, effort)
+        if more < 0 or pieces + count > len(found.G) or nodes + more > len(found.u):
+            return i
+        if more > 0:
+            pair = Pair(F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+            found.square[i] = path_square(pair, space.matching, space.u[:more], space.s[:more], space.room.d)
+            for k in range(count):
+                for r in range(space.out.shape[1]):
+                    for c in range(space.out.shape[2]):
+                        found.G[pieces + k, r, c] = space.out[k, r, c]
+            for j in range(more):
+                found.u[nodes + j], found.s[nodes + j] = space.u[j], space.s[j]
+            pieces, nodes = pieces + count, nodes + more
+        found.pieces[i], found.nodes[i] = pieces, nodes
+    return end
 
 
 class Search:
     """Working space for curves of one kind, of up to so many fine samples and pieces; and what they have in common."""
 
     degree = 3
-    steps = Steps(greedy, removed, repaired, written)
+    near_all = near_all
 
     def __init__(
         self, count: int, pieces: int, unit: Array, metric: Array, q: int, rational: bool, smooth: bool = False
     ) -> None:
-        d = len(unit)
-        self.unit, self.per, self.metric = unit, 1 / unit, metric
-        p = self.degree
-        self.product = certificate.products(p, q) if rational else np.zeros((0, 0))
-        self.loops = certificate.loop(d), certificate.loop(d + rational)
-        self.fine, self.samples, self.room = (
-            samples(count, d),
-            samples(count, d),
-            room(count, d, q, pieces + 8 if smooth else 0),
-        )
-        self.matching = certificate.room_for(q, p, d + rational)
-        self.G, self.out = np.zeros((pieces + 2, 4, d)), np.zeros((pieces + 2, p + 1, d + rational))
-        self.u, self.s = np.zeros(0), np.zeros(0)
-        self.failing, self.widest = np.zeros(count), np.zeros(d)
+        d, p = len(unit), self.degree
+        product = certificate.products(p, q) if rational else np.zeros((0, 0))
+        self.kind = Kind(unit, 1 / unit, metric, product, certificate.loop(d), certificate.loop(d + rational))
+        self.space = Space(
+            samples(count, d), samples(count, d), room(count, d, q, pieces + 8 if smooth else 0),
+            certificate.room_for(q, p, d + rational), np.zeros((pieces + 2, 4, d)),
+            np.zeros((pieces + 2, p + 1, d + rational)), np.zeros(8 * count), np.zeros(8 * count), np.zeros(count),
+            np.zeros(count), np.zeros((2, count)),
+        )  # fmt: skip
 
-    def curve(self, F: Array, hard: Array, target: float, most: int, effort: Effort) -> Found | None:
-        """Find at most `most` pieces near a curve, or none; `target` is the square of the largest distance allowed.
+    def longer(self) -> None:
+        """Make space for longer paths."""
+        self.space = self.space._replace(u=np.zeros(2 * len(self.space.u)), s=np.zeros(2 * len(self.space.s)))
 
-        Bounded: at most about log n tries a piece, effort.steps steps a fit, effort.rounds rounds of repair, and all
-        that ATTEMPTS times.
-        """
-        fine = self.fine
-        end = int(finely(F, self.per, hard, fine, self.room))
-        for attempt in range(ATTEMPTS):
-            if attempt == ATTEMPTS - 1:  # the last time with all samples
-                inside = fine.hard[1:end]
-                inside[inside == 0] = 2
-            last = int(merged(fine, end, F.shape[1] == 2, self.samples, self.room))
-            count = int(self.steps.greedy(F, self.per, self.G, self.samples, last, self.room, effort, most))
-            if count > most:
-                return None
-            if 1 < count <= (effort.few if F.shape[1] == 2 else effort.few_curved):
-                count = int(self.steps.removed(self.G, self.samples, last, count, self.room, effort.simple))
-            found, end = self._certified(F, end, last, count, most, target, effort)
-            if found or end == 0:
-                return found
-        return None
+    def all(self, lot: Lot, effort: Effort, progress: Progress | None = None) -> list[Found | None]:
+        """Return pieces near each curve, or none."""
+        if effort.backward:
+            turned = self.all(_turned(lot), effort._replace(backward=False), progress)
+            return [self._forward(lot, i, found) if found else None for i, found in enumerate(reversed(turned))]
+        count, i = len(lot.at) - 1, 0
+        ends, result = lot.at[1:], []
+        pieces = max(int(lot.most.max(initial=0)), min(int(lot.most.sum()), SOME))
+        found = Answers(
+            np.zeros((pieces, *self.space.out.shape[1:])), np.zeros(0), np.zeros(0), np.zeros(count),
+            np.zeros(count, np.int64), np.zeros(count, np.int64),
+        )  # fmt: skip
+        while i < count:
+            if len(found.u) < len(self.space.u):
+                nodes = max(len(self.space.u), 8 * SOME)
+                found = found._replace(u=np.zeros(nodes), s=np.zeros(nodes))
+            stop = max(i + 1, int(np.searchsorted(ends, lot.at[i] + SOME, "right")))
+            done = int(self.near_all(lot, i, stop, self.kind, self.space, effort, found))
+            if done == i:
+                self.longer()
+            k = j = 0
+            for c in range(i, done):
+                a, b = int(found.pieces[c]), int(found.nodes[c])
+                one = Found(found.G[k:a].copy(), found.u[j:b].copy(), found.s[j:b].copy(), float(found.square[c]))
+                result.append(one if b > j else None)
+                k, j = a, b
+            tell(progress, done / count)
+            i = done
+        return result
 
-    def fewest(self, F: Array, hard: Array, target: float, most: int, efforts: tuple[Effort, ...]) -> Found | None:
-        """Return the fewest pieces that are found in several ways."""
-        best = None
-        for effort in efforts:
-            if not effort.backward:
-                found = self.curve(F, hard, target, most, effort)
-            else:
-                found = self.curve(np.ascontiguousarray(F[::-1, ::-1]), hard[::-1].copy(), target, most, effort)
-                found = self._turned(F, found, target) if found else None
-            if found and (best is None or len(found.G) < len(best.G)):
-                best = found
+    def fewest(self, lot: Lot, efforts: tuple[Effort, ...], progress: Progress | None = None) -> list[Found | None]:
+        """Return the fewest pieces near each curve that are found in several ways."""
+        best: list[Found | None] = [None] * (len(lot.at) - 1)
+        for k, effort in enumerate(efforts):
+            for i, found in enumerate(self.all(lot, effort, part_of(progress, k, len(efforts)))):
+                own = best[i]
+                if found and (own is None or len(found.G) < len(own.G)):
+                    best[i] = found
         return best
 
-    def _turned(self, F: Array, found: Found, target: float) -> Found | None:
+    def _forward(self, lot: Lot, i: int, found: Found) -> Found | None:
         """Return what was found for the curve backward, forward; its proof is made again."""
-        G = np.ascontiguousarray(found.G[::-1, ::-1])
+        F = lot.F[lot.at[i] : lot.at[i + 1]]
+        G, kind = np.ascontiguousarray(found.G[::-1, ::-1]), self.kind
         u, s = len(G) - found.u[::-1], len(F) - found.s[::-1]
-        square = path_square(Pair(F, G, self.metric, self.product, *self.loops), self.matching, u, s, self.widest)
-        return Found(G, u, s, float(square)) if 0 <= square <= target else None
+        pair = Pair(F, G, kind.metric, kind.product, kind.D, kind.W)
+        square = float(path_square(pair, self.space.matching, u, s, np.zeros(len(kind.unit))))
+        return Found(G, u, s, square) if 0 <= square <= lot.target[i] else None
 
-    def _certified(
-        self, F: Array, end: int, last: int, count: int, most: int, target: float, effort: Effort
-    ) -> tuple[Found | None, int]:
-        """Prove what the search has found, repairing it where that fails; return also the last fine sample, or 0."""
-        S, G, room = self.samples, self.G, self.room
-        for _ in range(effort.rounds):
-            self.steps.written(F, G, count, S, last, self.unit, self.out, room)
-            pair = Pair(F, self.out[:count], self.metric, self.product, *self.loops)
-            u, s = S.u[: last + 1], S.s[: last + 1]
-            nodes = self._refined(pair, target, u, s)
-            places = np.flatnonzero(self.failing[:last] >= 0)
-            if not len(places):
-                u, s = self.u[:nodes], self.s[:nodes]
-                square = path_square(pair, self.matching, u, s, self.widest)
-                return Found(self.out[:count].copy(), u.copy(), s.copy(), float(square)), end
-            u, s = u.copy(), s.copy()
-            where = (np.maximum(self.failing[places], s[places]) + s[places + 1]) / 2
-            end = int(forced(F, self.per, self.fine, end, S, last, self.failing, room))
-            if end == 0:
-                return None, 0
-            last = int(merged(self.fine, end, F.shape[1] == 2, S, room))
-            interpolated(S, last, s, u)
-            count = self._repaired(last, count, most, where, effort)
-            if count > most:
-                return None, end
-        return None, end
 
-    def _repaired(self, last: int, count: int, most: int, where: Array, effort: Effort) -> int:
-        """Mend the pieces at some places; return how many there are."""
-        return int(self.steps.repaired(self.G, self.samples, last, count, most, where, self.room, effort.steps))
-
-    def _refined(self, pair: Pair, target: float, u: Array, s: Array) -> int:
-        """Write a finer path to self.u and self.s, and where it fails to self.failing; return how many nodes it has."""
-        while True:
-            nodes = int(refined(pair, self.matching, target, u, s, self.u, self.s, self.failing)) if len(self.u) else 0
-            if nodes:
-                return nodes
-            self.u, self.s = (np.zeros(2 * len(self.u) + 4 * len(u) + 64) for _ in range(2))
+def _turned(lot: Lot) -> Lot:
+    """Return curves that run backward, the last one first."""
+    ends = lot.hard_at + np.diff(lot.at) + 1
+    return Lot(
+        np.ascontiguousarray(lot.F[::-1, ::-1]), len(lot.F) - lot.at[::-1], lot.hard[::-1].copy(),
+        len(lot.hard) - ends[::-1], lot.target[::-1].copy(), lot.most[::-1].copy(),
+    )  # fmt: skip

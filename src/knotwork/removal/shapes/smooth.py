@@ -23,7 +23,7 @@ from knotwork.removal.shapes.knots import mended, thinned, tightened
 from knotwork.removal.shapes.repair import FORCED, interpolated
 from knotwork.removal.shapes.residuals import FAIR
 from knotwork.removal.shapes.samples import counted, finely, merged
-from knotwork.removal.shapes.search import Effort, Found, Search
+from knotwork.removal.shapes.search import Effort, Found, Search, Task, certified
 
 #: knots for each piece, the joint at its end being one of them
 PARTS = 3
@@ -32,9 +32,13 @@ SWEEPS = 3
 #: pieces of a closed curve that is turned, at least
 ROUND = 4 * DEGREE
 #: knots put in on each side of the seam, at most, so that it can go
-HELP = 4
+HELP = 6
 #: the least length of a piece, per mean length
 LEAST = 1e-6
+
+
+#: the certificate with knots put in where it fails
+certified_smooth = certified.variant(repaired=mended)
 
 
 class Smoothing(NamedTuple):
@@ -101,6 +105,13 @@ def reduce_smooth(
     return result
 
 
+class Path(NamedTuple):
+    """What matches a curve with the given one."""
+
+    u: Array
+    s: Array
+
+
 class SmoothSearch(Search):
     """Working space for one curve, and the search for few knots."""
 
@@ -109,11 +120,13 @@ class SmoothSearch(Search):
         progress: Progress | None,
     ) -> None:  # fmt: skip
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
-        self.F, self.hard, self.effort, self.how, self.progress = F, hard, effort, how, progress
+        self.F, self.hard, self.progress, self.passes = F, hard, progress, how.passes
+        self.effort = effort._replace(reach=how.reach)
+        self.G, self.samples, self.room = self.space.G, self.space.samples, self.space.room
         self.target, self.most = float(given.target()[0]), pieces - 8
         self.count = self.end = self.last = 0
 
-    def smoothed(self, found: Found) -> Found | None:
+    def smoothed(self, found: Found) -> Path | None:
         """Find a smooth curve from pieces, or none."""
         self._sampled(found.s, found.u)
         self._begun(found)
@@ -121,45 +134,52 @@ class SmoothSearch(Search):
         there = np.flatnonzero(self.samples.hard[: self.last + 1] == 1).tolist()
         for (k0, k1), (ja, jb) in zip(itertools.pairwise(ends), itertools.pairwise(there), strict=True):
             descended_frame(self.G, k0, k1 - 1, self.samples, ja, jb, self.room, 1, 1, SWEEPS, FAIR, 0.0)
-        self.count = self._repaired(self.last, self.count, self.most, np.zeros(0), self.effort)
+        self._mended()
         return self.thinner() if self.count <= self.most else None
 
-    def thinner(self) -> Found | None:
+    def thinner(self) -> Path | None:
         """Take out knots, and prove what is left."""
         at = self.room.frame.at
-        for k in range(self.how.passes):
+        for k in range(self.passes):
             before = at[self.count - 1]
             self._thinned()
-            tell(self.progress, (k + 1) / (self.how.passes + 1))
+            tell(self.progress, (k + 1) / (self.passes + 1))
             if at[self.count - 1] == before:
                 break
-        return self._certified(self.F, self.end, self.last, self.count, self.most, self.target, self.effort)[0]
+        return self._proven()
+
+    def _proven(self) -> Path | None:
+        """Prove what is found, with more knots where that fails."""
+        task = Task(self.F, self.hard, self.target, self.most)
+        while True:
+            state = certified_smooth(task, self.kind, self.space, self.end, self.last, self.count, self.effort)
+            self.count, nodes, self.last, self.end = map(int, state)
+            if nodes >= 0:
+                break
+            self.longer()
+        if not nodes:
+            return None
+        return Path(self.space.u[:nodes].copy(), self.space.s[:nodes].copy())
+
+    def _mended(self) -> None:
+        places = np.zeros(0)  # everywhere
+        self.count = int(mended(self.G, self.samples, self.last, self.count, self.most, places, self.room, self.effort))
 
     def _thinned(self) -> None:
-        self.count = int(
-            thinned(
-                self.G, self.samples, self.last, self.count, self.room, self.how.reach, self.effort.steps,
-                self.effort.simple,
-            )
-        )  # fmt: skip
-
-    def _repaired(self, last: int, count: int, most: int, where: Array, effort: Effort) -> int:
-        self.last = last
-        self.count = int(mended(self.G, self.samples, last, count, most, self.room, self.how.reach, effort.steps))
-        return self.count
+        self.count = int(thinned(self.G, self.samples, self.last, self.count, self.room, self.effort))
 
     def _sampled(self, s: Array, u: Array) -> None:
         """Take samples, with parameters from a path."""
-        self.end = int(finely(self.F, self.per, self.hard, self.fine, self.room))
-        self.last = int(merged(self.fine, self.end, self.F.shape[1] == 2, self.samples, self.room))
+        self.end = int(finely(self.F, self.kind.per, self.hard, self.space.fine, self.room))
+        self.last = int(merged(self.space.fine, self.end, self.F.shape[1] == 2, self.samples, self.room))
         interpolated(self.samples, self.last, s, u)
 
     def _begun(self, found: Found) -> None:
         """Place knots on the joints of pieces and between, by length, and control points near the curve."""
-        S, frame, d = self.samples, self.room.frame, len(self.unit)
+        S, frame, d = self.samples, self.room.frame, len(self.kind.unit)
         u, hard, pieces = S.u[: self.last + 1].copy(), S.hard[: self.last + 1] == 1, len(found.G)
         on = _points(found.G[..., :d], u)
-        on = (on - on[0]) * self.per
+        on = (on - on[0]) * self.kind.per
         v = np.append(0.0, np.cumsum(np.sqrt((np.diff(on, axis=0) ** 2).sum(axis=1))))
         corner = np.zeros(pieces + 1, bool)
         corner[np.round(u[hard]).astype(int)] = True
@@ -195,7 +215,7 @@ class SmoothSearch(Search):
         n = frame.at[count - 1] + DEGREE + 1
         return np.where(fixed < count, frame.at[np.minimum(fixed, count - 1)], n - 1)
 
-    def turned(self, path: Found) -> int:
+    def turned(self, path: Path) -> int:
         """Turn a closed curve so that its seam is in the middle; return with which piece of f it begins, or 0."""
         S, frame, F = self.samples, self.room.frame, self.F
         u = path.u
@@ -218,7 +238,7 @@ class SmoothSearch(Search):
         at, n = frame.at[:count].copy(), frame.at[count - 1] + DEGREE + 1
         C = np.concatenate([frame.C[at[c] : n], frame.C[1 : at[c - 1] + DEGREE + 1]])
         # the first points of f are the origins
-        C += (self._joint(0) - self._joint(i)) * self.per
+        C += (self._joint(0) - self._joint(i)) * self.kind.per
         frame.C[: len(C)] = C
         frame.h[:count] = np.roll(frame.h[:count], -c)
         for flags in (frame.times, frame.fixed, frame.tried):
@@ -229,41 +249,55 @@ class SmoothSearch(Search):
         self._sampled(s, u)
         if not frame.fixed[0]:
             S.hard[0] = S.hard[self.last] = 0
-            self.fine.hard[0] = self.fine.hard[self.end] = FORCED
+            self.space.fine.hard[0] = self.space.fine.hard[self.end] = FORCED
         frame.at[0] = 0
         framed(frame, 0, count - 1, count)
         netted(self.G, 0, count - 1, self.room)
-        self._loosen(count - c)
+        self._loosen()
         return i
 
-    def _loosen(self, seam: int) -> None:
-        """Make the seam a simple knot: with more and more knots next to it, which may go again when it has."""
-        frame = self.room.frame
-        for _ in range(HELP):
+    def _loosen(self) -> None:
+        """Make the seam a simple knot: with more and more knots next to it, which may go again when it has.
+
+        At last it goes although the curve crosses itself nearby: as it did before, but for the smallest change.
+        """
+        frame, effort = self.room.frame, self.effort
+        self._mended()  # samples have moved, and a fit that is off anywhere nearby would hold the seam
+        for trial in range(HELP):
+            seam = self._seam()
+            if not seam:
+                break
             for k in (seam, seam - 1):
                 tightened(self.G, self.samples, self.last, k, self.count, self.room)
                 self.count += 1
-            seam += 1
-            frame.tried[: self.count + 1] = 1
-            frame.tried[seam] = 0
-            while not frame.tried[seam] and frame.times[seam] > 1:
-                self._thinned()
-            if frame.times[seam] == 1:
-                break
+            if trial == HELP - 1:
+                self.effort = effort._replace(simple=False)
+            before = frame.fixed[: self.count + 1].copy()
+            frame.fixed[: self.count + 1] = np.arange(self.count + 1) != seam + 1  # nothing else goes now
+            frame.tried[seam + 1] = 0
+            self._thinned()
+            frame.fixed[: self.count + 1] = np.delete(before, seam + 1) if self.count < len(before) - 1 else before
+        self.effort = effort
         frame.tried[: self.count + 1] = 0
+
+    def _seam(self) -> int:
+        """Return the knot inside that counts more than once though it need not, or 0."""
+        frame = self.room.frame
+        inside = (frame.times[1 : self.count] > 1) & (frame.fixed[1 : self.count] == 0)
+        return int(np.argmax(inside)) + 1 if inside.any() else 0
 
     def _joint(self, i: int) -> Array:
         """Return the point of f before piece i, or its end."""
-        d = len(self.unit)
+        d = len(self.kind.unit)
         row = self.F[i, 0] if i < len(self.F) else self.F[-1, -1]
         result: Array = row[:d] / row[d] if len(row) > d else row
         return result
 
-    def result(self, path: Found, given: Curves, turned: int, periodic: bool) -> Smooth:
+    def result(self, path: Path, given: Curves, turned: int, periodic: bool) -> Smooth:
         """Return the curve in the units of what is given."""
         frame, count, F = self.room.frame, self.count, self.F
         n = frame.at[count - 1] + DEGREE + 1
-        points = self._joint(0) + frame.C[:n] * self.unit
+        points = self._joint(0) + frame.C[:n] * self.kind.unit
         fixed = self.samples.hard[: self.last + 1] == 1
         for at, s in zip(self._corners(), self.samples.s[: self.last + 1][fixed].astype(int), strict=True):
             points[at] = self._joint(s)
