@@ -155,11 +155,12 @@ def test_progress_is_told_and_may_stop_the_work(form):
 
 
 def test_a_long_curve_is_searched_in_parts(monkeypatch):
-    from knotwork.removal.shapes import bezier
+    from knotwork.removal.shapes import bezier, search
 
     curve = polyline(WAVE)
     whole = kw.reduce(curve, 0.02, distance="geometric", form="bezier")
     monkeypatch.setattr(bezier, "LONG", 40)
+    monkeypatch.setattr(search, "SOME", 40)
     told = []
     parts = kw.reduce(curve, 0.02, distance="geometric", form="bezier", progress=told.append)
     assert len(told) == 2 + 3

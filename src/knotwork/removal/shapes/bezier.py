@@ -119,7 +119,7 @@ def reduce_bezier(
     degree : {3, 2}
         Of the new pieces.
     progress : callable, optional
-        Called with the part that is done after each curve, and each of the parts of LONG pieces of a long one.
+        Called with the part that is done, after every few thousand pieces.
 
     Returns
     -------
