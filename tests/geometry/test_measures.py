@@ -62,19 +62,38 @@ def test_a_cusp_and_a_point():
     exact = mpmath.quad(lambda u: 3 * abs(1 - 2 * u) * mpmath.sqrt(1 + (1 - 2 * u) ** 2), [0, 0.5, 1])
     assert abs(mpmath.mpf(cusp.value) - exact) <= cusp.bound < 1e-9
     assert kw.length(kw.curve([[1.0, 1]] * 4)).value == 0
-    assert kw.by_length(kw.curve([[1.0, 1]] * 4), 0.0) == 0
+    assert kw.by_length(kw.curve([[1.0, 1]] * 4), 0.0) == (0, 0)
 
 
 @given(kinds.curves(dtype=float, rational=None, degrees=st.integers(1, 3)), st.lists(st.floats(0, 1), max_size=5))
 def test_lengths_lead_back(curve, parts):
     total = kw.length(curve)
     s = np.array(parts) * total.value
-    u = kw.by_length(curve, s)
+    u, bound = kw.by_length(curve, s)
     assert u.shape == s.shape
+    assert bound <= total.bound + 1e-12 * (1 + total.value)
     a = curve.space.domain[0]
     for x, want in zip(u, s, strict=True):
-        found = kw.length(curve, a, x).value if x > a else 0.0
-        assert found == pytest.approx(want, abs=1e-9 * (1 + total.value))
+        found = kw.length(curve, a, x) if x > a else kw.geometry.Measured(0.0, 0.0)
+        assert abs(found.value - want) <= bound + found.bound
+
+
+def test_the_bound_of_a_parameter_holds_beside_mpmath():
+    curve = kw.curve([[0, 0], [1, 2], [3, -1], [4, 0]])
+    for want in (0.1, 1.0, 2.5):
+        u, bound = kw.by_length(curve, want)
+        with mpmath.workdps(30):
+            x = mpmath.mpf(float(u))
+            speed = lambda t: mpmath.hypot(3 + 6 * t - 6 * t * t, 6 - 30 * t + 27 * t * t)  # noqa: E731
+            assert abs(mpmath.quad(speed, [0, x / 2, x]) - want) <= bound <= 2 * kw.length(curve).bound
+
+
+def test_many_parameters_at_once_are_those_of_each():
+    curve = kw.curve(np.random.default_rng(1).random((9, 3)), weights=1 + np.arange(9) % 3)
+    s = np.linspace(0, kw.length(curve).value, 5001)
+    many = kw.by_length(curve, s)
+    assert (np.diff(many.value) > 0).all()
+    assert many.value[::500].tolist() == [float(kw.by_length(curve, x).value) for x in s[::500]]
 
 
 def test_areas_of_exact_curves_are_exact():
@@ -104,4 +123,4 @@ def test_what_has_none_is_refused():
         kw.by_length(kw.curve([[0, 0], [1, 0]], 1), [0.5, 2.0])
     with pytest.raises(ParameterError, match="trim"):
         kw.length(kw.curve([[0, 0], [1, 0]], 1), 0.5, 0.25)
-    assert kw.by_length(kw.curve([[0, 0], [1, 0]], 1), []).shape == (0,)
+    assert kw.by_length(kw.curve([[0, 0], [1, 0]], 1), []).value.shape == (0,)

@@ -93,7 +93,7 @@ def sample(file: Path, at: Sequence[float] | None, number: int | None, lengths: 
         elif number is not None:
             u = np.linspace(a, b, number)
         else:
-            u = kw.by_length(s, np.linspace(0, kw.length(s).value, lengths or 2))
+            u = kw.by_length(s, np.linspace(0, kw.length(s).value, lengths or 2)).value
         points = np.asarray(s(u), np.float64).reshape(len(u), -1)
         for x, row in zip(u.tolist(), points.tolist(), strict=True):
             click.echo(",".join(map(repr, [i, x, *row])))

@@ -1,5 +1,6 @@
 """What knot insertion tells of a curve or a surface: boxes, zeros, lengths; all certified by control points."""
 
+from knotwork.geometry.along import by_length
 from knotwork.geometry.chords import Polyline
 from knotwork.geometry.closest_points import closest
 from knotwork.geometry.crossings import intersect
@@ -7,7 +8,7 @@ from knotwork.geometry.flattening import flatten
 from knotwork.geometry.gathering import Crossings
 from knotwork.geometry.lines import Line, Plane
 from knotwork.geometry.local_shape import curvature, frame, normals
-from knotwork.geometry.measures import Measured, area, by_length, centroid, length
+from knotwork.geometry.measures import Measured, area, centroid, length
 from knotwork.geometry.meshing import Mesh
 from knotwork.geometry.nearest import Closest
 from knotwork.geometry.offsetting import Offset, offset

@@ -1,4 +1,4 @@
-"""Length, area and centroid of curves, each with a proven bound on its error; and parameters at given lengths.
+"""Length, area and centroid of curves, each with a proven bound on its error.
 
 Pieces are halved until s = |c'|² and the weights w differ by little from their mean values s₀ and w₀: by a sixteenth of
 them, as Bernstein coefficients tell. Then √s = √s₀ (1 + x)^½ and 1/w = 1/w₀ · (1 + y)⁻¹ are short series in the
@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, real_numbers
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.bezier import product
 from knotwork.geometry.pieces import UNIT, Pieces, coordinates, halved
@@ -24,10 +24,6 @@ from knotwork.spline import Spline
 
 #: by how much s and w may differ from their means, and terms of their series: what is left is below 2⁻⁵³
 NEAR, TERMS = 1 / 16, 12
-#: nodes of Gauss's formula
-GAUSS = 8
-#: Newton's steps towards a length
-STEPS = 40
 
 
 class Measured(NamedTuple):
@@ -76,73 +72,8 @@ def length(curve: Spline, a: Any = None, b: Any = None) -> Measured:
     if a is not None or b is not None:
         start, end = curve.space.domain
         curve = trim(curve, start if a is None else a, end if b is None else b)
-    return _sum(*_lengths(curve)[:2])
-
-
-def by_length(curve: Spline, s: Any) -> Array:
-    """Return the parameters where a curve has come so far: the inverse of its length.
-
-    Parameters
-    ----------
-    curve : Spline
-        Real, of one parameter.
-    s : array_like
-        Lengths from the start of the domain, from 0 to that of the curve; a rounding beyond is taken for the end.
-
-    Returns
-    -------
-    ndarray
-        One parameter for each, float64. Where the curve stands still, the first that has the length.
-
-    Raises
-    ------
-    ParameterError
-        If a length is negative or above that of the curve.
-
-    Examples
-    --------
-    >>> import knotwork as kw
-    >>> kw.by_length(kw.curve([[0, 0], [0, 0], [4, 0]], 2), [0, 1, 4]).tolist()  # 4u²
-    [0.0, 0.5, 1.0]
-    """
-    require_curve(curve)
-    wanted = real_numbers(s, "lengths", ParameterError).astype(np.float64)
-    values, errors, start, end = _lengths(curve)
-    along = np.concatenate([[0.0], np.cumsum(values)])
-    total = along[-1]
-    slack = float(np.sum(errors)) + 4 * len(values) * UNIT * total
-    if ((wanted < 0) | (wanted > total + slack)).any():
-        raise ParameterError(
-            f"length {wanted[(wanted < 0) | (wanted > total + slack)][0]} given; expected 0 to {total}"
-        )
-    flat = np.minimum(wanted.reshape(-1), total)
-    k = np.clip(np.searchsorted(along, flat, "left") - 1, 0, len(values) - 1)
-    nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
-    nodes, weights = (nodes + 1) / 2, weights / 2
-
-    def speed(u: Array) -> Array:
-        found: Array = np.linalg.norm(
-            curve.derivatives(u, 1)[1].astype(np.float64).reshape(*u.shape, curve.dim), axis=-1
-        )
-        return found
-
-    a, b = start[k], end[k]
-    inside = np.nextafter(b, a)  # the derivative at the end of a piece is not that of the next
-    low, high, target = a.copy(), b.copy(), flat - along[k]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        x = a + (b - a) * np.clip(np.where(values[k] > 0, target / values[k], 0.0), 0, 1)
-        i = np.arange(len(x))
-        for _ in range(STEPS):
-            y = np.minimum(a[i, None] + (x[i] - a[i])[:, None] * nodes, inside[i, None])
-            over = (speed(y) @ weights) * (x[i] - a[i]) - target[i]
-            low[i], high[i] = np.where(over <= 0, x[i], low[i]), np.where(over >= 0, x[i], high[i])
-            i, over = (each[abs(over) > 2 * UNIT * total] for each in (i, over))
-            if not len(i):
-                break
-            step = x[i] - over / speed(np.minimum(x[i], inside[i]))
-            x[i] = np.where((step > low[i]) & (step < high[i]), step, low[i] + (high[i] - low[i]) / 2)
-    found: Array = np.where(flat <= 0, start[0], np.where(flat >= total, end[-1], x)).reshape(wanted.shape)
-    return found
+    found = lengths(curve)
+    return _sum(found.values, found.errors)
 
 
 def area(curve: Spline) -> Measured:
@@ -297,8 +228,21 @@ def _weights_near(H: list[Pieces]) -> Array:
     return _near(H[-1])
 
 
-def _lengths(curve: Spline) -> tuple[Array, Array, Array, Array]:
-    """Return the lengths of parts of a curve, how far they may be off, and between which parameters they are."""
+class Lengths(NamedTuple):
+    """The lengths of parts of a curve."""
+
+    values: Array
+    errors: Array
+    #: between which parameters they are
+    start: Array
+    end: Array
+    #: Bernstein coefficients of the speed by the parameter from 0 to 1, and how far it may be off; NaN where it is slow
+    speed: Array
+    off: Array
+
+
+def lengths(curve: Spline) -> Lengths:
+    """Return the lengths of parts of a curve, each with a bound on its error."""
     H, breaks = coordinates(curve)
     H, breaks = [Pieces(h.c.astype(np.float64), h.e.astype(np.float64)) for h in H], breaks.astype(np.float64)
     H, scale = _scaled(H, curve.rational)
@@ -327,6 +271,7 @@ def _lengths(curve: Spline) -> tuple[Array, Array, Array, Array]:
     s, (chord, polygon, off) = _speed(H, curve.rational), chords(H)
     usable = _near(s) & (_weights_near(H) if curve.rational else True)
     values, errors = (chord + polygon) / 2, (polygon - chord) / 2 + off
+    speed, unsure = np.full((len(values), 1), np.nan), np.full(len(values), np.nan)
     if usable.any():
         root, left = _power(Pieces(s.c[usable], s.e[usable]), 0.5)
         if curve.rational:
@@ -336,9 +281,13 @@ def _lengths(curve: Spline) -> tuple[Array, Array, Array, Array]:
         mean, error = _mean(root, left)
         better = error < errors[usable]
         values[usable], errors[usable] = np.where(better, mean, values[usable]), np.where(better, error, errors[usable])
+        speed = np.full((len(values), root.c.shape[1]), np.nan)
+        speed[usable], unsure[usable] = root.c, error
     a, b = breaks[piece], breaks[piece + 1]
     start = a + (b - a) * place[:, 0]
-    return values * scale, errors * scale, start, np.append(start[1:], breaks[-1])
+    return Lengths(
+        values * scale, errors * scale, start, np.append(start[1:], breaks[-1]), speed * scale, unsure * scale
+    )
 
 
 def _speed(H: list[Pieces], rational: bool) -> Pieces:
