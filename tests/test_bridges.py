@@ -71,3 +71,33 @@ def test_scipy_there_and_back():
     np.testing.assert_allclose(kw.to_scipy(ring)(t), ring(t), atol=1e-14)
     with pytest.raises(PointError, match="polynomial"):
         kw.to_scipy(kw.curve([[0, 0], [1, 1]], 1, weights=[1, 2]))
+
+
+def test_lines_of_a_geoseries_in_order():
+    geopandas, shapely = pytest.importorskip("geopandas"), pytest.importorskip("shapely")
+    series = geopandas.GeoSeries([shapely.LineString([(0, 0), (3, 4)]), None, shapely.box(0, 0, 2, 1)], crs="EPSG:4326")
+    found = kw.from_shapely(series)
+    assert [curve.space.domain[1] for curve in found] == [5, 6]
+    assert geopandas.GeoSeries(kw.to_shapely(found)).length.tolist() == [5, 6]
+
+
+def test_pyvista_there_and_back():
+    pyvista = pytest.importorskip("pyvista")
+    ring = kw.interpolate([[1, 0], [0, 1], [-1, 0], [0, -1]], periodic=True)
+    dome = kw.surface(
+        [[[0, 0, 0], [0, 1, 1], [0, 2, 0]], [[1, 0, 1], [1, 1, 2], [1, 2, 1]], [[2, 0, 0], [2, 1, 1], [2, 2, 0]]], 2
+    )
+    data = kw.to_pyvista([CURVE, dome, ring], 0.01)
+    assert (data.n_lines, data.n_faces) == (2, len(kw.flatten(dome, 0.01).triangles))
+    first, second = kw.from_pyvista(data)
+    line = kw.flatten(CURVE, 0.01)
+    np.testing.assert_allclose(first.points[:, :2], line.points, rtol=1e-6)
+    assert (first.points[:, 2] == 0).all()
+    circle = kw.from_pyvista(pyvista.MultipleLines([[0, 0, 0], [3, 0, 0], [3, 4, 0]]))
+    assert circle[0].space.domain == (0, 7)
+    with pytest.raises(ParameterError, match="without lines given"):
+        kw.from_pyvista(pyvista.Sphere())
+    with pytest.raises(PointError, match=r"spline 0 is a .* expected two or three dimensions"):
+        kw.to_pyvista(kw.curve([[0, 0, 0, 0], [1, 1, 1, 1]], degree=1), 0.1)
+    assert second.space.periodic
+    assert len(second.points) > 8

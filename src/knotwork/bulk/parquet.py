@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.bridges import from_shapely, polyline
+from knotwork.bridges import from_shapely
+from knotwork.bridges.lines import polyline
 from knotwork.bulk.curves import told
 from knotwork.errors import FileError, KnotworkError, MissingExtraError
 from knotwork.space import SplineSpace
