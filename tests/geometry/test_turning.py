@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -87,6 +88,31 @@ def test_corners():
         kw.corners(c, 200)
 
 
+@pytest.mark.parametrize("at", [0.25, 0.3, 0.8])
+def test_cusps_inside_pieces_are_corners(at):
+    powers = np.array([[at * at, -2 * at, 1, 0], [-(at**3), 3 * at * at, -3 * at, 1]])  # (t − at)², (t − at)³
+    bernstein = np.array([[math.comb(i, k) / math.comb(3, k) for k in range(4)] for i in range(4)])
+    cusp = kw.curve(bernstein @ powers.T, 3)
+    for curve in (cusp, cusp.transform(1, [1e5, -1e5]), kw.elevate(cusp, 2), kw.insert(cusp, 0.5)):
+        assert kw.corners(curve) == pytest.approx([at], abs=1e-6)
+        assert kw.corners(curve, 179).tolist() == kw.corners(curve).tolist()
+        assert kw.corners(curve, 180).tolist() == []
+    rational = kw.Spline(cusp.spaces, np.concatenate([cusp.points, np.ones((4, 1))], axis=1) * 3, rational=True)
+    assert kw.corners(rational) == pytest.approx([at], abs=1e-6)
+
+
+def test_exact_cusps_and_pauses():
+    third = F(1, 3)
+    powers = [[third**2, -2 * third, 1, 0], [-(third**3), 3 * third**2, -3 * third, 1]]
+    points = [[sum(F(math.comb(i, k), math.comb(3, k)) * p[k] for k in range(i + 1)) for p in powers] for i in range(4)]
+    assert kw.corners(kw.curve(points)).tolist() == [third]
+    for number in (int, F):
+        pause = [[number(x), number(x)] for x in (-1, 1, -1, 1)]  # (2t − 1)³
+        assert kw.corners(kw.curve(pause)).tolist() == []
+        back = kw.curve([[number(x), number(0)] for x in (0, 1, 0)], 2, [0, 0, 0, number(1), number(1), number(1)])
+        assert [float(x) for x in kw.corners(back)] == [0, 0.5]
+
+
 def test_curvature_of_circles_and_of_a_helix():
     arc = kw.curve([[3, 0], [3, 3], [0, 3]], 2, weights=[1, 1, 2])
     u = np.linspace(0, 1, 7)
@@ -112,9 +138,21 @@ def test_normals_of_a_sphere_are_its_points_also_at_the_poles():
     ball, u, v = sphere(), np.linspace(0, 4, 9), np.linspace(0, 2, 9)
     N, S = kw.normals(ball, u, v, grid=True), ball(u, v, grid=True)
     assert N[:, 1:-1] == pytest.approx(S[:, 1:-1], abs=1e-12)
-    assert N[:, [0, -1]] == pytest.approx(S[:, [0, -1]], abs=1e-2)  # limits along a ray
+    assert N[:, [0, -1]] == pytest.approx(S[:, [0, -1]], abs=1e-12)
     assert np.linalg.norm(N, axis=-1) == pytest.approx(1)
     assert kw.curvature(ball, 0.3, 0.7) == pytest.approx([-1, -1], abs=1e-7)  # a double root
+
+
+def test_a_normal_is_told_where_all_rays_lead_to_one():
+    cone = kw.surface([[[0, 0, 1], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]], degree=1)  # a tip: each line has its own
+    assert kw.normals(cone, 0.0, [0.0, 1.0]) == pytest.approx(kw.normals(cone, 0.5, [0.0, 1.0]), abs=1e-12)
+    flat = [[[0, 0, 0], [1, 0, 0], [2, 1, 0]], [[1, 0, 0], [2, 0, 0], [3, 1, 0]], [[2, -1, 0], [3, -1, 0], [4, 0, 0]]]
+    assert kw.normals(kw.surface(flat, 2), 0.0, 0.0) == pytest.approx([0, 0, 1])  # sides that touch in a corner
+    bent = np.array(flat, float)
+    bent[1, 1, 2] = 1
+    assert np.isnan(kw.normals(kw.surface(bent, 2), 0.0, 0.0)).all()
+    assert np.isfinite(kw.normals(kw.surface(bent, 2), 0.1, 0.1)).all()
+    assert np.isfinite(kw.flatten(kw.surface(bent, 2), 0.1).normals).all()
 
 
 def test_frames_turn_against_the_torsion():

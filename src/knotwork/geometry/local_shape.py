@@ -18,6 +18,14 @@ from knotwork.spline import Spline
 ROUNDING = 2.0**-44
 #: derivatives of the normal that are looked at where it vanishes
 ORDERS = 4
+#: where rays to a degenerate point come from, as parts of the domain; of no such line that is degenerate all the way
+TARGETS = (
+    (1 / 2 + 1 / 1024, 1 / 2 + 1 / 1536),
+    (1 / 4 + 1 / 768, 3 / 4 + 1 / 1280),
+    (3 / 4 - 1 / 896, 1 / 4 + 1 / 1152),
+)
+#: unit normals that differ by less are one
+AGREEING = 2.0**-20
 #: reflections between two parameters of a frame, in every interval between knots: more till they settle
 FIRST, MOST = 8, 1 << 14
 
@@ -77,8 +85,9 @@ def normals(surface: Spline, u: Any, v: Any, grid: bool = False) -> Array:
     Returns
     -------
     ndarray, shape (…, 3)
-        At a pole, or along an edge that is one point, where the product vanishes: its limit from the middle of the
-        domain. NaN only where there is none within four derivatives, as on a surface that is a line.
+        At a pole, or along an edge that is one point, where the product vanishes: its limit as parameters come near.
+        NaN where there is none: where limits along rays from three places in the domain differ, or do not show within
+        four derivatives, as on a surface that is a line.
 
     Examples
     --------
@@ -216,14 +225,20 @@ def _largest(surface: Spline) -> float:
 
 
 def _limits(surface: Spline, x: Array, y: Array) -> Array:
-    """Return the leading term of ∂S/∂u × ∂S/∂v along the ray to the middle of the domain."""
-    middle = [(float(s.domain[0]) + float(s.domain[1])) / 2 for s in surface.spaces]
-    length = [float(s.domain[1] - s.domain[0]) for s in surface.spaces]
-    # a step of no rational length, so that it is not along a line that is degenerate all the way
-    du, dv = (middle[0] - x) + length[0] / 1024, (middle[1] - y) + length[1] / 1536
+    """Return the limits of the direction of ∂S/∂u × ∂S/∂v, or 0 where they are not the same along all rays."""
     at_end = [w >= float(s.domain[1]) for w, s in zip((x, y), surface.spaces, strict=True)]
-    x, y = (np.where(e, np.nextafter(w, -np.inf), w) for e, w in zip(at_end, (x, y), strict=True))
-    D = surface.derivatives(x, y, ORDERS + 1).astype(np.float64)
+    u, v = (np.where(e, np.nextafter(w, -np.inf), w) for e, w in zip(at_end, (x, y), strict=True))
+    D = surface.derivatives(u, v, ORDERS + 1).astype(np.float64)
+    (a, b), (c, d) = ((float(s.domain[0]), float(s.domain[1])) for s in surface.spaces)
+    rays = [_leading(surface, D, a + p * (b - a) - x, c + q * (d - c) - y) for p, q in TARGETS]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        first, *others = (N / np.linalg.norm(N, axis=-1, keepdims=True) for N in rays)
+        agree = np.all([np.linalg.norm(N - first, axis=-1) <= AGREEING for N in others], axis=0)
+    return np.where(agree[:, None], first, 0.0)
+
+
+def _leading(surface: Spline, D: Array, du: Array, dv: Array) -> Array:
+    """Return the leading term of ∂S/∂u × ∂S/∂v along rays, from derivatives where they begin; 0 if there is none."""
 
     def along(i: int, j: int) -> list[Any]:
         """Return the Taylor coefficients of ∂ᵢᵤ∂ⱼᵥ S along the ray: (Σ C(k, r) duʳ dvᵏ⁻ʳ ∂ʳᵤ∂ᵏ⁻ʳᵥ) / k!."""
@@ -234,8 +249,8 @@ def _limits(surface: Spline, x: Array, y: Array) -> Array:
         return found
 
     first, second = along(1, 0), along(0, 1)
-    found, open_still = np.zeros((len(x), 3)), np.ones(len(x), bool)
-    scale = np.full(len(x), 0.0)
+    found, open_still = np.zeros((len(du), 3)), np.ones(len(du), bool)
+    scale = np.full(len(du), 0.0)
     for k in range(ORDERS + 1):
         terms = [_product(first[r], second[k - r]) for r in range(k + 1)]
         N, size = (np.sum([t[part] for t in terms], axis=0) for part in (0, 1))

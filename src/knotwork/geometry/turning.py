@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from itertools import pairwise
 from math import isfinite
@@ -12,7 +13,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, exact_number, in_arithmetic_of, real_numbers
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.exactly import exact_net
-from knotwork.geometry.pieces import Pieces, coordinates
+from knotwork.geometry.pieces import UNIT, Pieces, coordinates, halved
 from knotwork.geometry.roots import Zeros, zeros_of_pieces
 from knotwork.spline import Spline
 
@@ -126,14 +127,17 @@ def corners(curve: Spline, angle: float = 1.0) -> Array:
     Returns
     -------
     ndarray, shape (m,)
-        Knots, increasing; the seam of a closed curve counts. Where a derivative vanishes, the next one that does not
-        tells the direction, so a cusp at a knot is a turn by 180°.
+        Increasing: knots, of which the seam of a closed curve is one, and cusps between them. Where a derivative
+        vanishes, the next one that does not tells the direction, so a cusp is a turn by 180°. Between knots of a curve
+        of floats, it vanishes where it cannot be told from 0; exact ones have exact cusps, or the middles of brackets.
 
     Examples
     --------
     >>> import knotwork as kw
     >>> kw.corners(kw.curve([[0, 0], [1, 0], [1, 1], [0, 1]], degree=1, periodic=True)).tolist()
     [0.0, 0.25, 0.5, 0.75]
+    >>> kw.corners(kw.curve([[0, 0], [1, 1], [0, 1], [1, 0]])).round(12).tolist()
+    [0.5]
     """
     require_curve(curve)
     if not isinstance(angle, int | float) or not isfinite(angle) or not 0 <= angle <= 180:
@@ -144,11 +148,62 @@ def corners(curve: Spline, angle: float = 1.0) -> Array:
     closed = curve.space.periodic or bool((_ends(H, curve)[0] == _ends(H, curve)[1]).all())
     if closed:
         before, after, at = np.roll(end, 1, 0), start, breaks[:-1]
+    found: Array = np.sort(np.concatenate([at[_turned(before, after, angle)], _cusps(H, curve, angle)]))
+    return found
+
+
+def _turned(before: Array, after: Array, angle: float) -> Array:
+    """Tell which unit vectors turn by more than an angle."""
     with np.errstate(invalid="ignore", divide="ignore"):
         half = np.linalg.norm(after - before, axis=1) / np.linalg.norm(after + before, axis=1)  # tan of half the turn
-    turned = 2 * np.degrees(np.arctan(half)) > angle
-    found: Array = at[turned]
+    found: Array = 2 * np.degrees(np.arctan(half)) > angle
     return found
+
+
+def _velocity(H: list[Pieces], curve: Spline) -> list[Pieces]:
+    """Return polynomials along the derivative: A', or w A' − w' A."""
+    if not curve.rational:
+        return [h.slope() for h in H]
+    return [h.slope().times(H[-1]).minus(h.times(H[-1].slope())) for h in H[:-1]]
+
+
+def _cusps(H: list[Pieces], curve: Spline, angle: float) -> Array:
+    """Return where the direction turns by more than an angle inside pieces: where the derivative vanishes."""
+    breaks = curve.space.breaks
+    if curve.space.degree < 2:
+        return breaks[:0]
+    if H[0].c.dtype == object:
+
+        def square(H: list[Pieces]) -> Pieces:
+            total, *rest = (h.times(h) for h in _velocity(H, curve))
+            return functools.reduce(Pieces.plus, rest, total)
+
+        zeros = _turns(curve, square)
+        inside = (zeros.multiplicity // 2 % 2 == 1) & ~np.isin(zeros.low, breaks) & (angle < 180)
+        exact: Array = zeros.values[inside]
+        return exact
+
+    def known(D: list[Pieces]) -> tuple[Array, Array]:
+        """Tell where a direction is proven, and where no derivative can be told from 0."""
+        c = np.stack([h.c for h in D], axis=2)
+        slack = sum(h.e + 8 * UNIT * abs(h.c) for h in D)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = c.sum(axis=1) / np.linalg.norm(c.sum(axis=1), axis=1)[:, None]
+        ahead = ((c * mean[:, None]).sum(axis=2) - slack).min(axis=1) > 0
+        return ahead, (abs(c).max(axis=2) <= 4 * slack).all(axis=1)
+
+    D, piece, place = halved(_velocity(H, curve), lambda D: np.logical_or(*known(D)))
+    ahead, _ = known(D)
+    at = np.flatnonzero(ahead)
+    i, j = at[:-1], at[1:]
+    parted = (np.diff(at) > 1) & (piece[i] == piece[j])
+    i, j = i[parted], j[parted]
+    before, after = (np.stack([h.c[k, end] for h in D], axis=1) for k, end in ((i, -1), (j, 0)))
+    before, after = (v / np.linalg.norm(v, axis=1)[:, None] for v in (before, after))
+    t = (place[i].sum(axis=1) + place[j, 0]) / 2
+    start, end = breaks[piece[i]].astype(np.float64), breaks[piece[i] + 1].astype(np.float64)
+    floats: Array = (start + t * (end - start))[_turned(before, after, angle)]
+    return floats
 
 
 def require_curve(curve: Any) -> None:
