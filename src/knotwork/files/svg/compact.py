@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -137,19 +138,22 @@ class Encoder:
 
     def number(self, n: Any) -> str:
         """Return the shortest text of a number of units."""
-        if self.digits is None:
-            return shortest_float(n)
-        sign, digits = ("-", str(-n)) if n < 0 else ("", str(n))
-        if self.digits <= 0:
-            zeros = -self.digits if n else 0
-            return sign + (digits + "0" * zeros if zeros < 3 else f"{digits}e{zeros}")
-        if n == 0:
-            return "0"
-        whole, part = digits[: -self.digits], digits[-self.digits :].rjust(self.digits, "0").rstrip("0")
-        if not whole and len(part) > 3 and part.startswith("000"):  # 1e-5 is shorter than .00001
-            small = part.lstrip("0")
-            return f"{sign}{small}e-{len(part)}"
-        return f"{sign}{whole}.{part}" if part else sign + whole
+        return shortest_float(n) if self.digits is None else _decimal(n, self.digits)
+
+
+@functools.lru_cache(1 << 15)  # small drawings have few numbers
+def _decimal(n: int, digits: int) -> str:
+    """Return the shortest text of n units of so many digits after the point."""
+    sign, text = ("-", str(-n)) if n < 0 else ("", str(n))
+    if digits <= 0:
+        zeros = -digits if n else 0
+        return sign + (text + "0" * zeros if zeros < 3 else f"{text}e{zeros}")
+    if n == 0:
+        return "0"
+    whole, part = text[:-digits], text[-digits:].rjust(digits, "0").rstrip("0")
+    if not whole and len(part) > 3 and part.startswith("000"):  # 1e-5 is shorter than .00001
+        return f"{sign}{part.lstrip('0')}e-{len(part)}"
+    return f"{sign}{whole}.{part}" if part else sign + whole
 
 
 def _scaled(x: float, digits: int) -> int:
