@@ -304,6 +304,28 @@ def test_curves_in_space():
     assert found.a.tolist() == found.b.tolist() == [[F(1, 2), F(1, 2)]]
 
 
+def test_orders_of_contact_in_space():
+    twisted = [[0, 0, 0], [F(1, 3), 0, 0], [F(2, 3), F(1, 3), 0], [1, 1, 1]]  # (t, t², t³)
+    others = {
+        1: [[0, 0, 0], [0, 1, 1]],
+        2: [[-1, 0, 0], [1, 0, 0]],  # its tangent
+        3: [[-1, 1, 0], [0, -1, 0], [1, 1, 0]],  # (t, t², 0)
+    }
+    for order, points in others.items():
+        found = kw.intersect(exactly(twisted), exactly(points, len(points) - 1))
+        assert found.multiplicity.tolist() == [order]
+        assert found.a.tolist() == [[0, 0]]
+        scaled = kw.curve(np.array(twisted, float) * 3), kw.curve(np.array(points, float) * 3, len(points) - 1)
+        assert kw.intersect(*scaled).multiplicity.tolist() == [order]
+        miss = kw.curve(np.array(points, float) * 3 + [0, 0, 2.0**-45], len(points) - 1)
+        assert kw.intersect(scaled[0], miss, tolerance=1e-9).multiplicity.tolist() in ([0], [1])
+    root = exactly([[0, 0, 2], [1, 0, 0], [2, 0, -2]], 2)  # z = 2 − 4u; it meets the other at an irrational place
+    up = exactly([[0, 0, -2], [F(1, 2), 0, 0], [1, 0, 7]], 2)
+    found = kw.intersect(root, up)
+    assert found.multiplicity.tolist() == [1]
+    assert found.a[0, 0] < found.a[0, 1]
+
+
 def test_a_plane():
     helix = kw.curve([[0, 0, 0], [1, 0, 1], [1, 1, 2], [0, 1, 3]])
     found = kw.intersect(helix, kw.Plane([0, 0, 1], [0, 0, 2]))

@@ -54,11 +54,11 @@ def intersect(a: Spline, b: Spline | Line | Plane | None = None, tolerance: floa
     -----
     Bézier pieces whose boxes overlap are halved; control points on both sides of a line or a plane part them. A pair of
     parts is done when derivatives prove one crossing at most and opposite signs on opposite sides prove one (Miranda),
-    or when it is as small as rounding; then, in the plane and up to a product of degrees of 49, a resultant tells the
-    multiplicity. No part is halved more than 48 times, and no more than 2,048 parts of a pair of pieces are looked at:
-    what is left is reported, roughly enclosed, with the multiplicity 0. Loops of a curve that are shorter than
-    rounding are not found; the places where a curve turns at a cusp are none. A place at a seam, of which a
-    2¹⁶th of a piece at most is before it, is told at the start.
+    or when it is as small as rounding; then, of curves in the plane and in space, up to a product of degrees of 49, a
+    resultant tells the multiplicity, the order of contact. No part is halved more than 48 times, and no more than 2,048
+    parts of a pair of pieces are looked at: what is left is reported, roughly enclosed, with the multiplicity 0. Loops
+    of a curve that are shorter than rounding are not found; the places where a curve turns at a cusp are none. A place
+    at a seam, of which a 2¹⁶th of a piece at most is before it, is told at the start.
 
     Examples
     --------

@@ -44,14 +44,15 @@ def decided(found: Meetings, first: Whole, second: Whole, tolerance: float) -> M
             continue
         box: Box = tuple((Fraction(x), Fraction(y)) for x, y in ends)
         places: list[tuple[Box, int]] | None = None
-        if m and first.exact is not None and second.exact is not None:
-            places = _bracket(first.exact[i], second.exact[j], found.at[k].tolist(), box)
-        elif not m and budget and len(box) == 2 and first.spline.dim == 2 and not (i == j and first is second):
+        curves = len(box) == 2 and first.spline.dim <= 3 and not (i == j and first is second)
+        if budget and curves and (not m or first.spline.dim == 3):
             budget -= 1
             here = met(_net(first, i), _net(second, j), box)
             places = None if here is None else [((s, t), n) for s, t, n in here]
             if places is not None and not exact:
                 places = [(box, sum(n for _, n in places))]
+        if m and places is None and first.exact is not None and second.exact is not None:
+            places = _bracket(first.exact[i], second.exact[j], found.at[k].tolist(), box)
         if places is None or (tolerance and not places):
             places = [(box, 0)]
         kept += [(k, *place) for place in places]

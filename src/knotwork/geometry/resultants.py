@@ -1,4 +1,4 @@
-"""Where two plane curves meet, with multiplicities, over whole numbers: what decides about curves that touch.
+"""Where two curves meet, with multiplicities, over whole numbers: what decides about curves that touch.
 
 The point (x, y) is on the curve (X(t), Y(t)) / W(t) if x W − X and y W − Y have a zero in common, that is if the
 determinant of Bézout's matrix of them is 0. With a curve in s for (x, y), it is a polynomial in s, whose zeros tell all
@@ -8,11 +8,14 @@ and surfaces, Computer Vision, Graphics, and Image Processing 28, 1984).
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Sequence
 from fractions import Fraction
 from math import comb, lcm
 from typing import Any
+
+import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.geometry.bezier import restricted
@@ -32,8 +35,9 @@ def met(a: Array, b: Array, box: Sequence[Sequence[Fraction]]) -> list[Met] | No
 
     Parameters
     ----------
-    a, b : ndarray of Fractions, shapes (n + 1, 3) and (m + 1, 3)
-        Homogeneous Bézier points.
+    a, b : ndarray of Fractions, shapes (n + 1, d + 1) and (m + 1, d + 1)
+        Homogeneous Bézier points in the plane or in space. The multiplicity in space is the order of contact, which
+        general views of both curves have too.
     box : ((Fraction, Fraction), (Fraction, Fraction))
 
     Examples
@@ -45,17 +49,18 @@ def met(a: Array, b: Array, box: Sequence[Sequence[Fraction]]) -> list[Met] | No
     >>> [[str(s[0]), str(t[0]), m] for s, t, m in met(arch, line, everywhere)]
     [['1/2', '1/2', 2]]
     """
-    one, two = _reduced(a), _reduced(b)
-    sizes = [max(map(len, c)) - 1 for c in (one, two)]
-    if not all(sizes) or sizes[0] * sizes[1] > LARGEST:
+    flat = [[_reduced(c @ view) for c in (a, b)] for view in _views(a)]
+    sizes = [[max(map(len, c)) - 1 for c in curves] for curves in flat]
+    if not all(n and m and n * m <= LARGEST for n, m in sizes):
         return None
     sides: list[list[Root]] = []
-    for first, second, (low, high) in ((one, two, box[0]), (two, one, box[1])):
-        p = _resultant(first, second)
-        if not p:
+    for k, (low, high) in enumerate(box):
+        seen = [p for p in (_resultant(curves[k], curves[1 - k]) for curves in flat) if p]
+        if len(seen) < min(len(flat), 2):
             return None
+        p = functools.reduce(divisor, seen)
         length = high - low
-        here = roots_of(_composed(p, low, length), WIDTH)
+        here = roots_of(_composed(p, low, length), WIDTH) if len(p) > 1 else []
         sides.append([Root(low + r.low * length, low + r.high * length, r.multiplicity) for r in here])
     found = []
     for s, t in itertools.product(*sides):
@@ -64,6 +69,17 @@ def met(a: Array, b: Array, box: Sequence[Sequence[Fraction]]) -> list[Met] | No
         if (P.min(axis=0) <= Q.max(axis=0)).all() and (Q.min(axis=0) <= P.max(axis=0)).all():
             found.append(((s.low, s.high), (t.low, t.high), min(s.multiplicity, t.multiplicity)))
     return found
+
+
+def _views(net: Array) -> list[Array]:
+    """Return the matrices that take homogeneous points to the plane: of points in space, three general ones.
+
+    Two different ones see a point of space in different places, so a meeting in space is one that two of them see.
+    """
+    if net.shape[1] == 3:
+        return [np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1]], object)]
+    sides = ((2, 3), (-3, 5), (7, -11))
+    return [np.array([[1, 0, 0], [0, 1, 0], [x, y, 0], [0, 0, 1]], object) for x, y in sides]
 
 
 def _reduced(net: Array) -> list[Polynomial]:
