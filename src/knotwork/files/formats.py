@@ -101,6 +101,29 @@ FORMATS = (
         shapes=True,
     ),
     Format("cad.step", "STEP", (".stp", ".step"), "curves and surfaces, B-splines in place", "curves and surfaces"),
+    Format(
+        "analysis.geopdes",
+        "GeoPDEs geometry",
+        (".geopdes",),
+        "curves, surfaces, volumes; also from .txt",
+        "the same, exactly",
+    ),
+    Format(
+        "analysis.toolbox",
+        "NURBS toolbox",
+        (".mat",),
+        "curves, surfaces, volumes",
+        "the same, exactly",
+        needs="scipy",
+    ),
+    Format(
+        "analysis.petiga",
+        "PetIGA and igakit",
+        (".petiga",),
+        "a curve, surface or volume; also from .dat",
+        "the same, exactly",
+    ),
+    Format("analysis.mfem", "MFEM NURBS mesh", (".mesh",), "curves, surfaces, volumes", ""),
     Format("meshes.stl", "STL mesh", (".stl",), "", "triangles", triangles=True),
     Format("meshes.ply", "PLY mesh", (".ply",), "", "triangles", triangles=True),
 )
@@ -316,6 +339,8 @@ def format_of(path: Path, format: str | None = None, data: bytes | None = None) 
     found = SUFFIXES.get(suffix)
     if suffix == ".json" and format is None and data is not None and _MAP.search(data[:4096]):
         return SUFFIXES[".geojson"]
+    if suffix in (".txt", ".dat") and format is None and data is not None:
+        found = _of_analysis(data) or found
     if found is None and format is None and suffix not in ELSEWHERE and data is not None:
         found = _by_content(unpacked(data))
     if found is None:
@@ -336,10 +361,21 @@ def _by_content(data: bytes) -> Format | None:
         return SUFFIXES[".gpx"]
     if head.startswith(b"<"):
         return SUFFIXES[".svg"] if b"<svg" in head else None
+    if found := _of_analysis(data):
+        return found
     lines = head.splitlines()[:-1] or head.splitlines()
     marks = b"0123456789+-.eE,;|\t \"'"
     numbers = sum(bool(line.strip()) and not line.strip(marks) for line in lines)
     return SUFFIXES[".dat"] if numbers > len(lines) / 2 else None
+
+
+def _of_analysis(data: bytes) -> Format | None:
+    """Return the format of analysis whose mark is at the start of the bytes; such files end in .txt and .dat, often."""
+    from knotwork.files.analysis import geopdes, petiga
+
+    if data.startswith(petiga.MARKS):
+        return SUFFIXES[".petiga"]
+    return SUFFIXES[".geopdes"] if geopdes.MARK.match(data) else None
 
 
 def require_options(found: Format, path: Path, options: Mapping[str, Any]) -> None:

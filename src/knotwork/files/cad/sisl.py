@@ -2,56 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.cad.shapes import plain
 from knotwork.files.entry import checked
+from knotwork.files.words import Words
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
-_WORD = re.compile(r"\S+")
 #: the parameters of each class of objects that is read
 CLASSES = {100: 1, 200: 2}
-
-
-class _Numbers:
-    """The numbers of a file, from the first to the last."""
-
-    def __init__(self, data: bytes) -> None:
-        self.text = data.decode("latin-1")
-        self.words = [(m.start(), m[0]) for m in _WORD.finditer(self.text)]
-        self.at = 0
-
-    def where(self) -> str:
-        place = self.words[min(self.at, len(self.words) - 1)][0] if self.words else 0
-        line = self.text.count("\n", 0, place) + 1
-        return f"line {line}"
-
-    def whole(self, least: int) -> int:
-        """Return the next number, which is whole."""
-        word = self.words[self.at][1] if self.at < len(self.words) else "the end of the file"
-        if not re.fullmatch(r"\d{1,9}", word) or int(word) < least:
-            raise FileError(f"{self.where()}: {word[:20]!r} given; expected a whole number of {least} or more")
-        self.at += 1
-        return int(word)
-
-    def floats(self, count: int) -> Array:
-        """Return the next numbers."""
-        words = self.words[self.at : self.at + count]
-        if len(words) < count:
-            raise FileError(f"{self.where()}: {count} numbers are needed; the file has {len(words)} more")
-        for _, word in words:
-            try:
-                float(word)
-            except ValueError:
-                raise FileError(f"{self.where()}: {word[:20]!r} given; expected a number") from None
-            self.at += 1
-        return np.array([word for _, word in words], np.float64)
 
 
 def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
@@ -63,9 +26,9 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
         If a number is none, or an object is of another class: how long it is cannot be known. The message tells the
         line.
     """
-    take = _Numbers(data)
+    take = Words(data)
     found = []
-    while take.at < len(take.words):
+    while not take.over:
         where = take.where()
         kind = take.whole(0)
         if kind not in CLASSES:

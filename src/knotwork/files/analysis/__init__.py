@@ -1,0 +1,1 @@
+"""Patches for isogeometric analysis: the NURBS toolbox and GeoPDEs, igakit and PetIGA, MFEM."""
