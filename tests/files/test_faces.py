@@ -27,8 +27,9 @@ def test_every_format_gives_back_what_was_written(tmp_path: Path, suffix: str) -
     (found,) = read(str(path))
     np.testing.assert_array_equal(found.points[:, :2], CURVE.points)
     assert not found.points[:, 2:].any()  # formats of solids know space alone
-    assert write(path, [CURVE, CURVE]).count == 2
-    assert len(read(path)) == 2
+    if suffix != ".petiga":  # holds one patch
+        assert write(path, [CURVE, CURVE]).count == 2
+        assert len(read(path)) == 2
 
 
 def test_a_suffix_in_capitals_is_the_same(tmp_path: Path) -> None:
@@ -69,7 +70,8 @@ def test_files_that_cannot_be_read(tmp_path: Path, suffix: str) -> None:
 @pytest.mark.parametrize("suffix", WRITTEN)
 def test_damage_anywhere_is_an_error_or_a_spline(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"a{suffix}"
-    write(path, [CURVE, kw.curve([[0, 0], [1, 2], [3, 1]], degree=1, periodic=True)])
+    ring = kw.curve([[0, 0], [1, 2], [3, 1]], degree=1, periodic=True)
+    write(path, [CURVE, ring] if suffix != ".petiga" else ring)
     sound = path.read_bytes()
     rng = np.random.default_rng(1)
     refused = 0
