@@ -192,13 +192,14 @@ def test_straight_runs_stay_straight_if_asked(tmp_path: Path) -> None:
     assert "--keep takes corners" in refused.output
 
 
-def test_joints_that_carry_markers_stay(tmp_path: Path) -> None:
+def test_joints_that_markers_and_animations_count_stay(tmp_path: Path) -> None:
     path = tmp_path / "a.svg"
     wave = "M0 0" + "".join(f"L{x} {0.01 * np.sin(x):.4f}" for x in range(1, 50))
     marks = ['marker-mid="url(#m)"', 'style="marker:url(#m)"', 'marker-end="url(#m)"', 'marker-mid="none"']
     paths = "".join(f'<path {mark} d="{wave}"/>' for mark in marks)
-    path.write_text(f'<svg>{paths}<g style="marker-mid: url(#m)"><path d="{wave}"/></g></svg>')
+    moving = f'<path d="{wave}"><animate attributeName="d" to="{wave}" dur="1s"/></path>'
+    path.write_text(f'<svg>{paths}<g style="marker-mid: url(#m)"><path d="{wave}"/></g>{moving}</svg>')
     document = kw.open(path)
-    assert [place.fixed for place in document.places] == [True, True, False, False, True]
+    assert [place.fixed for place in document.places] == [True, True, False, False, True, True]
     data, _ = lighter(document, 0.1).document.bytes()
-    assert data.count(wave.encode()) == 3
+    assert data.count(wave.encode()) == 3 + 2

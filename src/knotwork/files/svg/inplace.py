@@ -205,7 +205,7 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
                     units="px",
                     where=f"{where}, subpath {number + 1}" if len(subpaths) > 1 else where,
                     scale=scales[key],
-                    fixed=stands is None or at.marked,  # markers count joints
+                    fixed=stands is None or at.marked or _animated(element),  # what counts joints
                     straight=corners,
                 )
             )
@@ -213,6 +213,14 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
     position = {key: k for k, key in enumerate(once)}
     maps = tuple((position[key], place) for key, place in drawn_by)
     return Drawing(data, tuple(outlines), tuple(splines), tuple(nets), tuple(places), maps)
+
+
+def _animated(element: Element) -> bool:
+    """Tell whether an animation goes from its data to other data, of as many segments."""
+    ways = ("animate", "set")
+    return any(
+        each.tag in ways and each.attributes.get("attributeName") in ("d", "points") for each in element.children
+    )
 
 
 def _scale(place: Affine) -> float:
