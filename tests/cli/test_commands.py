@@ -266,10 +266,15 @@ def test_offset_of_a_file_and_of_a_drawing(run, curve):
     told = run("offset", "curve.json", "-d", "-0.5", "-t", "1e-5", "-o", "beside.json").stdout
     assert "tolerance 1e-05" in told
     assert read("beside.json") == [kw.offset(curve, -0.5, 1e-5).spline]
-    write("square.svg", kw.curve([[0, 0], [2, 0], [2, 2], [0, 2]], 1, periodic=True))
+    square = kw.curve([[0, 0], [2, 0], [2, 2], [0, 2]], 1, periodic=True)
+    write("square.svg", square)
     run("offset", "square.svg", "-d", "-1", "--joins", "mitre", "-o", "wide.svg")
     (wide,) = read("wide.svg")
     assert wide.bounds == pytest.approx(np.array([[-1, -1], [3, 3]]), abs=1e-9)
+    write("squares.json", [square.transform(k) for k in (1, 4)])
+    run("offset", "squares.json", "-d", "1.5", "--self-crossings", "remove", "-o", "left.json")  # nothing of the first
+    (left,) = read("left.json")
+    assert left.bounds == pytest.approx(np.array([[1.5, 1.5], [6.5, 6.5]]), abs=1e-9)
     assert "tolerance" in run("offset", "curve.json", "-d", "1", "-t", "0", "-o", "none.json", code=1).stderr
     assert not Path("none.json").exists()
 

@@ -17,6 +17,7 @@ from knotwork.cli.terminal import Tolerance
 if TYPE_CHECKING:
     from knotwork.conversion.face import How
     from knotwork.geometry.joins import Joins
+    from knotwork.geometry.offsetting import SelfCrossings
 
 
 @main.command(short_help="Insert knots: more control points, the same shape.")
@@ -110,21 +111,29 @@ def bezier(job: Job) -> None:
 @click.option(
     "--joins", type=click.Choice(["round", "mitre", "bevel"]), default="round", help="Around corners.  [default: round]"
 )
-def offset(job: Job, distance: float, tolerance: Tolerance, joins: Joins) -> None:
+@click.option(
+    "--self-crossings",
+    type=click.Choice(["keep", "remove"]),
+    default="keep",
+    help="Whether to remove all that is nearer to a curve than the distance.  [default: keep]",
+)
+def offset(job: Job, distance: float, tolerance: Tolerance, joins: Joins, self_crossings: SelfCrossings) -> None:
     """Replace the plane curves of FILE by those at a distance to their left, as seen along the parameter.
 
     In an SVG drawing, whose y axis points down, that is the right side on the screen. The bound in the report is
-    proven: so far is a point at most from where it should be, at equal parameters.
+    proven: so far is a point at most from where it should be, at equal parameters. Without self-crossings, what is
+    left of a curve may be none or several.
 
     \b
     Examples:
       knotwork offset drawing.svg -d 2 -o inside.svg
       knotwork offset curve.json -d -0.5 -t 1e-6 --joins mitre -o beside.json
+      knotwork offset outlines.json -d 2 --self-crossings remove -o paths.json
     """
 
-    def change(spline: kw.Spline, allowed: float) -> tuple[kw.Spline, Any]:
-        found = kw.offset(spline, distance, allowed, joins=joins)
-        return found.spline, found.bound
+    def change(spline: kw.Spline, allowed: float) -> tuple[Any, Any]:
+        found = kw.offset(spline, distance, allowed, joins=joins, self_crossings=self_crossings)
+        return found.spline if self_crossings == "keep" else list(found.splines), found.bound
 
     job.run(change, tolerance)
 
