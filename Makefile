@@ -55,6 +55,7 @@ pictures-files: .venv/tested  ## drawings and maps before and after, to be looke
 
 bench-removal: .venv/tested  ## control points that `reduce` leaves, and its time, beside peers
 	$(BIN)/python benchmarks/removal.py
+	$(BIN)/python benchmarks/removal_shapes.py
 	$(BIN)/python benchmarks/removal_surfaces.py
 
 check-removal: .venv/tested  ## bounds of random reductions, worked out again in fractions: make check-removal NUMBER=10000

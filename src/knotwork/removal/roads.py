@@ -5,7 +5,8 @@ to stop. It never leaves more knots when it is larger: from one start because a 
 coarser start because no result from a finer one is let below what the coarser ones leave at the smallest tolerance that
 leads to them. Only those with more knots than the result can leave more; the others need not be followed. This holds
 for tolerances that are multiples of one another, as far as rounding does not decide. Effort "best" then squeezes knots
-out until the tolerance that is given is used up, and promises no such order.
+out until the tolerance that is given is used up, here and on a road from what the classic search leaves, and promises
+no such order.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.knots import distinct
 from knotwork.removal.chain import Links
-from knotwork.removal.lyche_morken import Found, last_copies
+from knotwork.removal.lyche_morken import Found, last_copies, search
 from knotwork.removal.problem import Original
 from knotwork.removal.result import Progress
 from knotwork.removal.road import follow
@@ -80,6 +81,12 @@ class Roads:
         if least > count:
             links = self._along(self.starts.level(manner.first, j), manner, limit, least, None)
         return links
+
+    def from_knots(self, mask: Array, manner: Manner) -> Links | None:
+        """Return what the road leaves that starts from some knots, or None if they are too few for it."""
+        start = self.starts.fit(mask)
+        limit = self.curve.limit()
+        return self._along(start, manner, limit, self.least, None) if start.off <= (4 * limit) ** 2 else None
 
     def _count(self, links: Links) -> int:
         return len(self.curve.kept(links))
@@ -203,7 +210,10 @@ def reduced(original: Original, candidates: Array, effort: str, progress: Progre
     best, way = min(found, key=lambda each: int(each[0][1].sum()))
     if effort == "best" and way:
         roads, links = way
-        best = roads.squeezed(links, roads.curve.limit()) or best
+        limit, manner = roads.curve.limit(), MANNERS["best"][-1]
+        classic = curves[0].from_knots(search(original, candidates & original.space.removable, None)[1], manner)
+        squeezed = [roads.squeezed(links, limit), classic and curves[0].squeezed(classic, curves[0].curve.limit())]
+        best = min((best, *filter(None, squeezed)), key=lambda each: int(each[1].sum()))
     if progress is not None:
         progress(1.0)
     return best

@@ -16,8 +16,9 @@ from knotwork.linear.least_squares import least_squares
 from knotwork.removal.scaled import Scaled
 from knotwork.space import SplineSpace
 
-#: a start with more than this part of the knots is all of them
+#: a start with more than this part of the knots is all of them; and so is every start of curves with so few knots
 DENSE = 0.6
+FEW = 48
 
 
 class Start(NamedTuple):
@@ -44,6 +45,13 @@ class Starts:
             starts.append(self._refined(starts[-1].mask if starts else fixed, first * 4.0 ** -len(starts)))
         return starts[j]
 
+    def fit(self, mask: Array) -> Start:
+        """Return least squares over the knots in a mask; a period has its seam among them."""
+        if self.data.period:
+            mask = mask.copy()
+            mask[0] = True
+        return self._fit(mask)[0]
+
     def _with_fewest(self, mask: Array) -> Array:
         """Return a mask with as many knots as have to stay, more of them spread evenly where they are too few."""
         n, N, periodic = self.data.degree, self.original.space.dimension, bool(self.data.period)
@@ -62,7 +70,7 @@ class Starts:
             mask = mask.copy()
             mask[0] = True
         space, t = self.original.space, self.data.t
-        while mask.sum() <= DENSE * len(mask):
+        while len(mask) > FEW and mask.sum() <= DENSE * len(mask):
             start, off = self._fit(mask)
             bad = np.flatnonzero(~(off <= most**2))
             if not len(bad):
