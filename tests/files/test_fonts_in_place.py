@@ -395,3 +395,47 @@ def test_char_strings_share_what_is_left(tmp_path, monkeypatch):
             each.decompile()
         assert programs[0].program == programs[1].program
         assert ("hstem" in programs[0].program) == (int(name[1:]) >= 50)
+
+
+@pytest.mark.parametrize("cubic", [False, True])
+def test_extrema_get_a_point_if_asked(tmp_path, cubic):
+    """A ring whose joints are all between its extrema; its box is that of its points afterwards."""
+    path = tmp_path / f"a.{'otf' if cubic else 'ttf'}"
+    names = [".notdef", "o"]
+    pens = {name: T2CharStringPen(900, None) if cubic else TTGlyphPen(None) for name in names}
+    angles = np.pi / 4 + np.pi / 2 * np.arange(5)
+    out = 400 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    along = 4 / 3 * np.tan(np.pi / 8) * np.stack([-out[:, 1], out[:, 0]], axis=1)
+    pen = pens["o"]
+    pen.moveTo(tuple(np.round(out[0] + 450)))
+    for a, b, c in zip(out + along, (out - along)[1:], out[1:], strict=False):
+        handles = (a, b) if cubic else ((a + b) / 2,)  # in TrueType a squarish ring
+        (pen.curveTo if cubic else pen.qCurveTo)(*(tuple(np.round(p + 450)) for p in (*handles, c)))
+    pen.closePath()
+    builder = FontBuilder(1000, isTTF=not cubic)
+    builder.setupGlyphOrder(names)
+    builder.setupCharacterMap({ord("o"): "o"})
+    if cubic:
+        builder.setupCFF("Turned", {}, {name: each.getCharString() for name, each in pens.items()}, {})
+    else:
+        builder.setupGlyf({name: each.glyph() for name, each in pens.items()})
+    builder.setupHorizontalMetrics(dict.fromkeys(names, (900, 50)))
+    for name in ("setupHorizontalHeader", "setupOS2", "setupPost"):
+        getattr(builder, name)()
+    builder.save(path)
+    given = kw.open(path, glyph="o")
+    found = lighter_font(given, 2.0, add_extrema=True)
+    assert found.glyphs == (1, 1)
+    assert 0 < found.bound <= 2
+    before, after = given.splines[0], found.document.splines[0]
+    ends = after(after.space.breaks)  # where pieces meet: at points, or at implied ones
+    assert np.abs(np.array([ends.min(axis=0), ends.max(axis=0)]) - after.bounds).max() < 1e-9
+    assert np.abs(before(before.space.breaks).max(axis=0) - before.bounds[1]).max() > 50
+    assert np.abs(before.bounds - after.bounds).max() <= 1
+    assert kw.distance_bound(before, after).bound <= found.bound * 1.01
+    words = ["reduce", str(path), "--glyph", "o", "-t", "2", "--add-extrema", "-o", str(tmp_path / f"b{path.suffix}")]
+    run = CliRunner().invoke(main, words)
+    assert run.exit_code == 0, run.output
+    assert "1 glyph with other points" in run.output
+    refused = CliRunner().invoke(main, ["reduce", "a.svg", "-t", "2", "--add-extrema"])
+    assert refused.exit_code == 2

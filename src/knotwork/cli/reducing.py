@@ -54,6 +54,7 @@ NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON 
     is_flag=True,
     help="Lines of a map, a track or a table cross themselves and each other only where they did.",
 )
+@click.option("--add-extrema", is_flag=True, help="Curves of glyphs get a point where they turn back in x or y.")
 @click.option("--together", is_flag=True, help="Files are masters of one family of fonts: points stay the same in all.")
 @flip
 def reduce(
@@ -68,6 +69,7 @@ def reduce(
     precision: int | None,
     shared_borders: bool,
     no_crossings: bool,
+    add_extrema: bool,
     together: bool,
     flip: bool,
 ) -> None:
@@ -106,7 +108,9 @@ def reduce(
         if kind.module == "fonts" and stays:
             if distance == "parametric" or form is not None or degree is not None or flip or precision is not None:
                 raise click.UsageError("a font in place takes --tolerance, --keep and --glyphs, of how it is reduced")
-            return _font(job, file, output, tolerance, features)
+            return _font(job, file, output, tolerance, features, add_extrema)
+        if add_extrema:
+            raise click.UsageError("--add-extrema is for fonts in place")
         if drawn and set(features) - ({"corners", "lines"} if kind.module == "svg" else set()):
             raise click.UsageError("of drawings, --keep takes corners, which stay anyway, and lines; of maps nothing")
         if drawn and not (no_crossings and IN_PLACE[kind.module] != "polyline"):
@@ -216,7 +220,7 @@ def _lighter(
 
 
 def _font(
-    job: Job, file: Path, output: Path | None, tolerance: Tolerance, keep: Sequence[str]
+    job: Job, file: Path, output: Path | None, tolerance: Tolerance, keep: Sequence[str], add_extrema: bool
 ) -> dict[str, Any] | None:
     """Reduce a font in place, and say what became of it."""
     from knotwork.files.fonts.lighter import lighter_font, require_font
@@ -226,7 +230,7 @@ def _font(
     start = time.perf_counter() - compiling.seconds()
     units = require_font(document).units
     allowed = tolerance.value * units if tolerance.relative else tolerance.value
-    found = lighter_font(document, allowed, keep=keep or KEPT)
+    found = lighter_font(document, allowed, keep=keep or KEPT, add_extrema=add_extrema)
     data, _ = found.document.packed(output if output and output != STREAM else file)
     seconds = time.perf_counter() - compiling.seconds() - start
     if output:
@@ -243,7 +247,7 @@ def _font(
     before, after = found.points
     job.echo(f"{before:,} → {after:,} points, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
     hints = f"; {found.hinted:,} of them had hints or instructions, which are dropped" if found.hinted else ""
-    job.echo(f"{report.counted(changed, 'glyph')} with fewer points{hints}")
+    job.echo(f"{report.counted(changed, 'glyph')} with {'other' if add_extrema else 'fewer'} points{hints}")
     job.echo(f"no point is farther than {report.upward(found.bound):.6g} from where it was: proven, rounding included")
     job.echo(written_to(output, 0.0))
     return None

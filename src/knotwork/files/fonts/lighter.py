@@ -9,6 +9,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, ParameterError
 from knotwork.files.document import Document
 from knotwork.files.fonts.contours import rounded, spline_of
+from knotwork.files.fonts.extrema import parted
 from knotwork.files.fonts.inplace import Font
 from knotwork.removal.outlines import KEPT, cost, outlined
 from knotwork.spline import Spline
@@ -18,7 +19,7 @@ class LighterFont(NamedTuple):
     """The result of `lighter_font`."""
 
     document: Document
-    #: how many glyphs have fewer points, and how many there are with contours of their own
+    #: how many glyphs have other points, and how many there are with contours of their own
     glyphs: tuple[int, int]
     #: points of all of them before and after
     points: tuple[int, int]
@@ -28,7 +29,9 @@ class LighterFont(NamedTuple):
     hinted: int
 
 
-def lighter_font(document: Document, tolerance: float, *, keep: Collection[str] = KEPT) -> LighterFont:
+def lighter_font(
+    document: Document, tolerance: float, *, keep: Collection[str] = KEPT, add_extrema: bool = False
+) -> LighterFont:
     """Return a font whose glyphs have few points: quadratic ones stay quadratic, cubic ones cubic.
 
     Parameters
@@ -40,6 +43,8 @@ def lighter_font(document: Document, tolerance: float, *, keep: Collection[str] 
     keep : collection of {"extrema", "corners", "lines"}
         Which points stay, where they are: those with a horizontal or vertical tangent, those where the contour turns by
         more than 10 degrees, and the ends of straight lines. At all points the tangents stay, but for rounding.
+    add_extrema : bool
+        Whether places inside curves where a coordinate turns get a point: a contour may have more points then.
 
     Raises
     ------
@@ -60,8 +65,9 @@ def lighter_font(document: Document, tolerance: float, *, keep: Collection[str] 
         before, after = before + count, after + count
         if document.places[i].fixed:
             continue
-        found = outlined(runs, tolerance, cubic=font.cubic, keep=keep)
-        if found is not None and found.points[1] < found.points[0]:
+        turning = parted(runs, font.cubic) if add_extrema else None
+        found = outlined(turning or runs, tolerance, cubic=font.cubic, keep=keep, anew=bool(turning))
+        if found is not None and (turning or found.points[1] < found.points[0]):
             changed[i] = spline_of(found.runs, font.cubic)
             worst = max(worst, found.bound)
             after += found.points[1] - count

@@ -37,6 +37,7 @@ def outlined(
     into: bool | None = None,
     keep: Collection[str] = KEPT,
     grid: float = 1.0,
+    anew: bool = False,
 ) -> Outlined | None:
     """Return a closed outline with few points within a distance of a given one.
 
@@ -55,11 +56,13 @@ def outlined(
         Which joints stay.
     grid : float
         The points of the result are multiples of it; what that moves counts in the bound. 0 for any points.
+    anew : bool
+        Whether no run may stay as it is, and there may be more: of an outline whose joints are not on the grid.
 
     Returns
     -------
     Outlined or None
-        None if the outline is to be of another kind and none was found within the tolerance.
+        None if the outline is to be of another kind, or anew, and none was found within the tolerance.
 
     Raises
     ------
@@ -77,16 +80,17 @@ def outlined(
         if each not in KEPT:
             raise ParameterError(f"keep {each!r} given; of an outline expected {', '.join(KEPT)}")
     into = cubic if into is None else into
+    same = into == cubic and not anew
     found = pieces(runs, cubic)
     before = cost(runs, cubic)
-    around = Around(found, joints(found, keep), tolerance, into, grid, verbatim=into == cubic)
+    around = Around(found, joints(found, keep), tolerance, into, grid, verbatim=same)
     for _ in range(ROUNDS):
         way = around.cheapest()
         if not way:
             break
         new = _runs(around, way, into)
         after = cost(new, into)
-        if into == cubic and after >= before:
+        if same and after >= before:
             break
         bound, failing = _proof(around, way, into)
         if bound <= tolerance:
@@ -94,7 +98,7 @@ def outlined(
         for edge in way:
             if edge.controls is not None and ((failing >= edge.start) & (failing <= edge.stop)).any():
                 around.banned.add((edge.start, edge.stop))
-    return Outlined(list(runs), 0.0, (before, before)) if into == cubic else None
+    return Outlined(list(runs), 0.0, (before, before)) if same else None
 
 
 def _runs(around: Around, way: list[Edge], cubic: bool) -> list[Array]:
