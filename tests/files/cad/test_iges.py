@@ -178,3 +178,21 @@ def test_damage_is_told_with_its_entity(kind: int, text: str, message: str) -> N
 def test_other_files_are_refused(text: str) -> None:
     with pytest.raises(FileError, match=r"column 73|expected IGES"):
         iges.decode(text.encode(), no_remark)
+
+
+def test_a_face_on_a_plane_is_as_large_as_its_edges_need() -> None:
+    """Solids with flat faces are written so: unbounded planes, here x + y = 2, and what bounds them."""
+    corners = [(2, 0, 0), (0, 2, 0), (0, 2, 5), (2, 0, 5)]
+    part = {"status": "00010000"}
+    entities = [(108, "1.,1.,0.,2.,0,0.,0.,0.,0.", {**part, "matrix": 15})]
+    for p, q in zip(corners, corners[1:] + corners[:1], strict=True):
+        entities.append((110, ",".join(f"{x}." for x in (*p, *q)), {**part, "matrix": 15}))
+    entities.append((102, "4,3,5,7,9", part))
+    entities += [(144, "1,1,0,11", {}), (124, "1.,0.,0.,10.,0.,0.,-1.,0.,0.,1.,0.,0.", part)]
+    told: list[str] = []
+    *edges, face = iges.decode(iges_file(entities), told.append)
+    assert [edge.parameters for edge in edges] == [1] * 4
+    placed = np.array(corners) @ np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]) + [10, 0, 0]
+    found = face.points.reshape(-1, 3)
+    assert np.allclose(sorted(found.tolist()), sorted(placed.tolist()), rtol=0, atol=1e-14)
+    assert len(told) == 1

@@ -23,6 +23,8 @@ DEEP = 20
 #: what carries no geometry of its own: notes, structure, properties, colours, pictures
 SILENT = {0, 106, 116, 123, 124, 125, 132, 134, 136, 202, 206, 208, 210, 212, 213, 214, 216, 218, 220, 222, 228, 230}
 SILENT |= {302, 304, 306, 310, 312, 314, 316, 320, 402, 404, 406, 410, 412, 414, 416, 502}
+#: an unbounded plane, of which a face shows a part
+PLANE = 108
 
 
 class Reader:
@@ -60,8 +62,16 @@ class Reader:
         take = Parameters(self.records.split(e))
         parts = self._parts(e, take)
         if parts is not None:
-            for number in parts:
-                yield from self.read(self.records.entity(number), matrix, depth + 1, e.kind in (142, 141))
+            inner = [self.records.entity(number) for number in parts]
+            edges = []
+            for each in inner:
+                if each.kind != PLANE:
+                    for shape in self.read(each, matrix, depth + 1, e.kind in (142, 141)):
+                        edges.append(shape.spline)
+                        yield shape
+            for each in inner:
+                if each.kind == PLANE:
+                    yield self._plane(each, matrix, edges)
             return
         make = MADE.get(e.kind)
         if make is None:
@@ -75,6 +85,23 @@ class Reader:
         )
         own = spline if e.kind in (126, 128) else None
         yield Shape(moved(used, matrix), place, e.number if own is not None else None, own, magnification(matrix))
+
+    def _plane(self, e: Entity, outer: Array | None, edges: list[Spline]) -> Shape:
+        """Return the rectangle of a plane A x + B y + C z = D that holds the edges of a face."""
+        self.reached.add(e.number)
+        *normal, level = Parameters(self.records.split(e)).floats(4)
+        n = np.array(normal)
+        if not n.any() or not edges:
+            raise FileError(f"the plane D{e.number} has no {'edges' if n.any() else 'normal'}")
+        frame = analytic.Frame.at(level * n / (n @ n), n)
+        matrix = after(outer, self.matrix(e.matrix, 0))
+        hull = np.concatenate([edge.points for edge in edges])
+        if matrix is not None:
+            hull = np.linalg.solve(matrix[:, :3], (hull - matrix[:, 3]).T).T
+        low, high = (f(frame.local(hull), axis=0) for f in (np.min, np.max))
+        net = analytic.plane(frame, (low[0], high[0]), (low[1], high[1]))
+        place = Place(name=e.label or None, layer=str(e.level) if e.level > 0 else None, units=self.records.units)
+        return Shape(moved(net, matrix), place._replace(where=e.where))
 
     def _parts(self, e: Entity, take: Parameters) -> list[int] | None:
         """Return what an entity that has no geometry of its own leads to; None if it has some."""
