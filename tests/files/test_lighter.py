@@ -203,3 +203,14 @@ def test_joints_that_markers_and_animations_count_stay(tmp_path: Path) -> None:
     assert [place.fixed for place in document.places] == [True, True, False, False, True, True]
     data, _ = lighter(document, 0.1).document.bytes()
     assert data.count(wave.encode()) == 3 + 2
+
+
+def test_a_longer_text_that_was_asked_for_is_not_remembered(tmp_path: Path) -> None:
+    path = tmp_path / "a.svg"
+    path.write_text('<svg><path d="M0 0T1 1 2 0M 0  5  C 1  5  2  5  3  5 L 4  5 L 5  5"/></svg>')
+    drawing = kw.open(path)
+    changed = drawing.with_splines(
+        {0: kw.elevate(drawing.splines[0]), 1: drawing.splines[1].transform(1, shift=[0, 1])}
+    )
+    assert b"T1 1" not in changed.bytes(even_if_longer=True)[0]
+    assert b"M0 0T1 1 2 0M" in changed.bytes(even_if_longer=False)[0]

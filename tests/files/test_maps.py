@@ -269,3 +269,6 @@ def test_metres_are_for_degrees(tmp_path: Path, name: str, text: str) -> None:
     result = CliRunner().invoke(main, ["reduce", str(path), "-t", "2km"])
     assert result.exit_code == 1
     assert "expected longitude, latitude in degrees" in result.output
+    result = CliRunner().invoke(main, ["reduce", str(path), "-t", "2%m"])
+    assert result.exit_code == 2
+    assert "such as 100m" in result.output

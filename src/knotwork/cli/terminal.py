@@ -165,7 +165,10 @@ def tolerance_or_metres(text: str) -> Tolerance:
     """Return a tolerance, which may also be a length on the ground: 100m, 2km."""
     for unit, metres in (("km", 1000.0), ("m", 1.0)):
         if text.endswith(unit):
-            return Tolerance(tolerance(text.removesuffix(unit)).value * metres, False, ground=True)
+            found = tolerance(text.removesuffix(unit))
+            if found.relative:
+                raise click.BadParameter(f"{text!r}; expected a length on the ground such as 100m or 2km")
+            return Tolerance(found.value * metres, False, ground=True)
     return tolerance(text)
 
 

@@ -152,7 +152,8 @@ class Drawing:
                 found = known.written
             else:
                 found = _text(outline, some, allowed, longer)
-                self._known[outline.span] = Known(allowed, {i: some[i] for i in found.new}, found)
+                if not longer:
+                    self._known[outline.span] = Known(allowed, {i: some[i] for i in found.new}, found)
             a, b = outline.span
             if (longer and some) or len(found.text) < b - a:
                 yield outline, found
