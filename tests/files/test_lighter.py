@@ -214,3 +214,13 @@ def test_a_longer_text_that_was_asked_for_is_not_remembered(tmp_path: Path) -> N
     )
     assert b"T1 1" not in changed.bytes(even_if_longer=True)[0]
     assert b"M0 0T1 1 2 0M" in changed.bytes(even_if_longer=False)[0]
+
+
+@pytest.mark.parametrize("inside", ["", '<circle r="3"/>', '<g transform="scale(0)"><path d="M0 0T1 1 2 0"/></g>'])
+def test_a_drawing_with_nothing_to_reduce_comes_back(tmp_path: Path, inside: str) -> None:
+    path, out = tmp_path / "a.svg", tmp_path / "b.svg"
+    path.write_text(f'<svg viewBox="0 0 9 9"><text>none</text>{inside}</svg>')
+    result = CliRunner().invoke(main, ["reduce", str(path), "-t", "0.2%", "-o", str(out)])
+    assert result.exit_code == 0, result.output
+    assert "0 → 0 segments" in result.output
+    assert out.read_bytes() == path.read_bytes()

@@ -89,18 +89,18 @@ def lighter(
         If the tolerance is not positive and finite, a spline is no plane curve, or crossings are to be avoided in a
         file that does not hold polylines alone, or metres are given for one that does not hold degrees.
     """
-    if not (np.isfinite(tolerance) and tolerance > 0):
+    places, content = document.places, document.content
+    free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
+    if not (np.isfinite(tolerance) and (tolerance > 0 or (tolerance == 0 and not free))):
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
-    places, content = document.places, document.content
     wanted = _Wanted(effort, shared, no_crossings, even_if_longer, ground)
     if no_crossings and not isinstance(content, Lines):
         raise ParameterError(f"no_crossings given for {document.path}; expected a map or a track: GeoJSON or GPX")
     if ground and not all(place.units == "degrees" for place in places):
         raise ParameterError(f"metres on the ground given for {document.path}; expected a map or a track in degrees")
     scales = [MOST if ground else place.scale for place in places]
-    free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
     accuracy = {i: grid or ROUNDED * tolerance / scales[i] for i in free}
     arcs = content.arcs if isinstance(content, Drawing) else {}
