@@ -17,8 +17,7 @@ from knotwork.files.ground import MOST, in_degrees, in_metres
 from knotwork.files.lines import DIGITS, Lines, digits_for, number, paced
 from knotwork.files.svg.inplace import Drawing
 from knotwork.files.uncrossed import Crossings, Reduce, apart, count_crossings, uncrossed
-from knotwork.geometry.bezier import joined, raised
-from knotwork.insertion import to_bezier
+from knotwork.geometry.bezier import joined, parted, raised
 from knotwork.removal import reduce as reduce_one
 from knotwork.removal.shapes.bezier import EFFORTS
 from knotwork.removal.shapes.features import CORNER
@@ -212,4 +211,4 @@ def _cubics(document: Document, index: int) -> Array:
         return raised(content.nets[index], 3)
     if spline.parameters != 1 or spline.dim != 2 or spline.rational or spline.space.degree > 3:
         raise ParameterError(f"spline {index} is a {str(spline)[1:-1]}; expected a plane curve of degree 1 to 3")
-    return raised(np.asarray(to_bezier(spline)[0]), 3)
+    return raised(parted(spline), 3)

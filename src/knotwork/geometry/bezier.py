@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.insertion.pieces import to_bezier
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -83,3 +84,16 @@ def joined(nets: Array, t: Array, closed: bool) -> Spline:
         return Spline(SplineSpace(n, np.append(np.repeat(t[:-1], n), t[-1]), periodic=True), points)
     knots = np.concatenate([t[:1], np.repeat(t, n), t[-1:]])
     return Spline(SplineSpace(n, knots), np.concatenate([nets[0, :1], points]))
+
+
+def parted(spline: Spline) -> Array:
+    """Return the Bézier pieces of a curve, as `to_bezier`: at once, if it was joined of pieces, whose points it has."""
+    n, t, breaks = spline.space.degree, spline.space.knots, spline.space.breaks
+    closed, pieces = spline.space.periodic, len(breaks) - 1
+    many = np.repeat(breaks[:-1] if closed else breaks, n)
+    if not np.array_equal(t[:-1] if closed else t[1:-1], many):
+        return np.asarray(to_bezier(spline)[0])
+    points = spline.coefficients
+    points = np.concatenate([points[-1:], points]) if closed else points
+    nets: Array = points[np.arange(pieces)[:, None] * n + np.arange(n + 1)]
+    return nets

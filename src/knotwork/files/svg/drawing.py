@@ -6,8 +6,8 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import FileError
+from knotwork.geometry.bezier import parted
 from knotwork.geometry.cubics import cubics
-from knotwork.insertion import to_bezier
 from knotwork.knots import multiplicities
 from knotwork.spline import Spline
 
@@ -60,12 +60,11 @@ def _pieces(spline: Spline, place: str) -> Array:
         raise FileError(f"{place} is a {str(spline)[1:-1]}; .svg holds real curves in the plane")
     if spline.space.degree == 0:
         raise FileError(f"{place} has degree 0; .svg holds curves of degree 1 and up")
-    nets, breaks = to_bezier(spline)
-    nets = in_floats(np.asarray(nets), place, FileError).astype(np.float64)
+    nets = in_floats(parted(spline), place, FileError).astype(np.float64)
     if not spline.rational:
         nets = np.concatenate([nets, np.ones((*nets.shape[:-1], 1))], axis=-1)
     # where the curve has no jump, pieces meet; what rounding says otherwise is not drawn as a gap
-    t, x = spline.space.knots, breaks[:-1]
+    t, x = spline.space.knots, spline.space.breaks[:-1]
     joins = multiplicities(t, x) <= spline.space.degree
     nets[1:, 0] = np.where(joins[1:, None], nets[:-1, -1], nets[1:, 0])
     if spline.space.periodic and joins[0]:
