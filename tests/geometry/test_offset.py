@@ -8,7 +8,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import knotwork as kw
@@ -301,6 +301,22 @@ def test_loops_go_round_what_shapely_leaves(curve, d):
     assert len(found.splines) == len(rings)
     assert all(left.space.periodic for left in found.splines)
     assert sum(float(kw.area(left).value) for left in found.splines) == pytest.approx(shape.area, abs=2e-3)
+
+
+@settings(max_examples=15)
+@given(st.integers(0, 10**6), st.integers(1, 3), st.sampled_from([0.05, 0.4, 1.2, -0.05, -0.4, -1.2]))
+@example(514, 3, 0.4)
+@example(690, 3, -1.2)
+def test_outlines_of_all_kinds_leave_what_shapely_leaves(seed, degree, d):
+    shapely = pytest.importorskip("shapely")
+    random = np.random.default_rng(seed)
+    angles = np.linspace(0, 2 * math.pi, int(random.integers(5, 16)), endpoint=False)
+    curve = closed((random.uniform(0.5, 3, len(angles)) * [np.cos(angles), np.sin(angles)]).T, degree)
+    shape = shapely.Polygon(kw.flatten(curve, 1e-6).points).buffer(-d, quad_segs=256)
+    found = kw.offset(curve, d, 1e-4, self_crossings="remove")
+    nowhere_nearer(curve, d, found, 1e-4)
+    area = sum(float(kw.area(left).value) for left in found.splines)
+    assert area == pytest.approx(shape.area, abs=2e-3 + 1e-4 * shape.length)
 
 
 @pytest.mark.parametrize(

@@ -114,8 +114,8 @@ def offset(
 
     What is removed begins and ends where ``spline`` crosses itself and, unless the curve is closed and crosses itself
     nowhere, where it crosses the offset of the other side, or circles about the ends. Between these places all or
-    nothing goes. That what stays is far enough is proven by empty discs that overlap. A loop less deep than ``bound``
-    may stay. A slot just as wide as twice the distance leaves a line there and back.
+    nothing goes. That what stays is far enough is proven by empty discs that overlap. A loop that is less deep than
+    rounding may stay. A slot just as wide as twice the distance leaves a line there and back.
 
     Examples
     --------
@@ -163,7 +163,7 @@ def _without_crossings(curve: Spline, d: float, tolerance: float) -> Offset:
     if not closed or len(met.a) or len(met.stretches):
         walls.append(_offset(curve, -d, tolerance / 4, "round").spline)
         walls += [] if closed else [ellipse(p, [abs(d), 0], [0, abs(d)]) for p in ends]
-    left = trimmed(found.spline, walls, curve, abs(d), found.bound, tolerance)
+    left = trimmed(found.spline, found.parameters, walls, curve, abs(d), found.bound, tolerance)
     return found._replace(splines=tuple(left))
 
 

@@ -21,6 +21,7 @@ from knotwork.geometry.bezier import joined, restricted
 from knotwork.geometry.chords import polyline
 from knotwork.geometry.closest_points import closest
 from knotwork.geometry.crossings import intersect
+from knotwork.geometry.joins import left_of
 from knotwork.geometry.pieces import UNIT
 from knotwork.insertion.pieces import from_bezier, to_bezier
 from knotwork.spline import Spline
@@ -41,7 +42,7 @@ class Arc(NamedTuple):
 
 
 def trimmed(
-    beside: Spline, walls: list[Spline], curve: Spline, d: float, bound: float, tolerance: float
+    beside: Spline, parameters: Array, walls: list[Spline], curve: Spline, d: float, bound: float, tolerance: float
 ) -> list[Spline]:
     """Return the parts of a curve beside another one that nowhere come nearer to it than d less the tolerance.
 
@@ -49,6 +50,8 @@ def trimmed(
     ----------
     beside : Spline
         Cubic pieces, within the bound of a curve whose distance from the other one is d where nothing else is nearer.
+    parameters : ndarray
+        Of the other one, for each break of this.
     walls : list of Spline
         Where it may come nearer, beside the places where it crosses itself.
     curve : Spline
@@ -58,15 +61,15 @@ def trimmed(
     """
     closed = beside.space.periodic or bool((beside.points[0] == beside.points[-1]).all())
     arcs = _arcs(beside, _cuts(beside, walls), closed)
-    far = d - 2 * bound - 64 * UNIT * float(abs(curve.hull_bounds).max() + d)
+    rounding = 1024 * curve.space.order * UNIT * float(abs(curve.hull_bounds).max() + d)
+    far = d - 2 * bound - rounding
     if far <= tolerance:
         return [beside]
-    middles = np.array([_middle(arc) for arc in arcs])
+    middles, t = np.array([_middle(arc) for arc in arcs]), np.array([arc.breaks[[0, -1]].mean() for arc in arcs])
     away = closest(curve, middles).distances
-    kept = [
-        bool(x >= far + bound * (arc.start == arc.end and len(arcs) > 1)) and _clear(arc, curve, far, tolerance / 16)
-        for arc, x in zip(arcs, away.tolist(), strict=True)
-    ]
+    near = _exactly(middles, t, beside, parameters, curve, d) < d - rounding
+    gone = (away < far) | _loops(arcs, near, closed)
+    kept = [not out and _clear(arc, curve, far, tolerance / 16) for arc, out in zip(arcs, gone.tolist(), strict=True)]
     if all(kept):
         return [beside]
     return [_spline(chain, loop) for chain, loop in _chains(arcs, kept, closed)]
@@ -138,6 +141,33 @@ def _middle(arc: Arc) -> Array:
     x = (t - arc.breaks[k]) / (arc.breaks[k + 1] - arc.breaks[k])
     point: Array = restricted(nets[k], x, x)[0]
     return point
+
+
+def _loops(arcs: list[Arc], near: Array, closed: bool) -> Array:
+    """Tell which arcs belong to some, one after another, that are all near and end where they start."""
+    found, count = np.zeros(len(arcs), bool), len(arcs)
+    begin = int(np.argmin(near)) if closed else 0
+    run: list[int] = []
+    for k in [*range(begin, count), *range(begin)]:
+        run = [*run, k] if near[k] else []
+        if run and arcs[run[0]].start == arcs[k].end:
+            found[run] = True
+    return found
+
+
+def _exactly(points: Array, t: Array, beside: Spline, parameters: Array, curve: Spline, d: float) -> Array:
+    """Return how near the curve comes to what points beside it stand for: c + d n, or points of an arc at a corner."""
+    low, high = map(float, beside.space.domain)
+    breaks, t = beside.space.breaks.astype(np.float64), low + (t - low) % (high - low)
+    k = np.clip(np.searchsorted(breaks, t, "right") - 1, 0, len(breaks) - 2)
+    foot, slope = curve.derivatives(np.interp(t, breaks, parameters), 1).astype(np.float64)
+    away = points - foot
+    across = left_of(slope)
+    across *= np.sign((across * away).sum(axis=1))[:, None]
+    corner = (parameters[k] == parameters[k + 1]) | ~across.any(axis=1)
+    toward = np.where(corner[:, None], away, across)
+    found: Array = closest(curve, foot + d * toward / np.hypot(*toward.T)[:, None]).distances
+    return found
 
 
 def _clear(arc: Arc, curve: Spline, far: float, spare: float) -> bool:
