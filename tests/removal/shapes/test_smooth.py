@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from test_bezier import coast, edges
 
 import knotwork as kw
+from knotwork.removal.shapes import smooth
 from knotwork.removal.shapes.frame import condensed, framed, netted
 from knotwork.removal.shapes.room import room
 from knotwork.removal.shapes.smooth import SMOOTHINGS
@@ -163,6 +164,18 @@ def test_few_points_on_a_coast():
         assert len(found.spline.points) <= most
         assert found.bound <= tolerance
         assert (multiplicities(found.spline.space) == 1).all()
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_long_curves_are_worked_on_in_parts(closed, monkeypatch):
+    """However many pieces are in their place at once, the result is the same, bit for bit."""
+    curve = polyline(coast() if closed else coast()[:900], closed)
+    before = kw.reduce(curve, 1.0, distance="geometric")
+    monkeypatch.setattr(smooth, "CHUNK", 16)
+    after = kw.reduce(curve, 1.0, distance="geometric")
+    assert len(before.spline.points) > 100
+    assert (after.spline.points == before.spline.points).all()
+    assert after.spline.space == before.spline.space
 
 
 def test_nets_of_a_frame_are_those_of_the_spline():

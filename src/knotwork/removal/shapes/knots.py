@@ -21,6 +21,72 @@ from knotwork.removal.shapes.window import HOPELESS, TARGET, copied
 
 #: sweeps of least squares before the p-norm
 SWEEPS = 2
+#: pieces behind a window whose knots are felt in it
+FELT = 2 * DEGREE + 3
+
+
+@kernel(inline=False)
+def parted(G, S, last, count, gap, chunk, room):
+    """Leave only the first pieces of an open curve in their place, the others `gap` further up.
+
+    frame.rest holds how many are in place, by how many pieces and control points the others are up, the first sample
+    that is matched behind those in place, and the gap as it was.
+    """
+    frame, u, D = room.frame, S.u, room.D
+    e = min(count, chunk) if frame.times[0] == DEGREE else count
+    front = last
+    if e < count:
+        front = 0
+        while front < last and u[front] < e:
+            front += 1
+    rest = frame.rest
+    rest[0], rest[1], rest[2], rest[3], rest[4] = e, 0, 0, front, 0
+    size = frame.at[count - 1] + DEGREE + 1
+    gap = min(gap, len(frame.C) - size)
+    if e == count or gap <= 0:
+        return
+    rest[1] = rest[2] = rest[4] = gap
+    for i in range(count - 1, e - 1, -1):
+        carried(G, i, i + gap, room)
+        frame.at[i + gap] += gap
+    for i in range(size - 1, frame.at[e - 1] + DEGREE, -1):
+        for c in range(len(D)):
+            frame.C[i + gap, c] = frame.C[i, c]
+
+
+@kernel(inline=False)
+def carried(G, i, k, room):
+    """Move piece i, with the knot at its end, to place k."""
+    frame = room.frame
+    frame.h[k], frame.at[k] = frame.h[i], frame.at[i]
+    for flags in (frame.fixed, frame.tried):
+        flags[k + 1] = flags[i + 1]
+    frame.times[k + 1] = frame.times[i + 1]
+    for r in range(DEGREE + 1):
+        for c in range(len(room.D)):
+            G[k, r, c] = G[i, r, c]
+        for l in range(DEGREE + 1):
+            frame.E[k, r, l] = frame.E[i, r, l]
+
+
+@kernel(inline=False)
+def pulled(G, S, last, count, chunk, room):
+    """Move some more pieces of a curve of so many to their place."""
+    frame, u, rest, D = room.frame, S.u, room.frame.rest, room.D
+    e, gap, points, front = rest[0], rest[1], rest[2], rest[3]
+    end = min(count, e + chunk)
+    first = frame.at[e - 1] + DEGREE + 1
+    if gap > 0 or points > 0:
+        for i in range(e, end):
+            carried(G, i + gap, i, room)
+            frame.at[i] -= points
+        for i in range(first, frame.at[end - 1] + DEGREE + 1):
+            for c in range(len(D)):
+                frame.C[i, c] = frame.C[i + points, c]
+    while front < last and (u[front] < end or end == count):
+        front += 1
+        u[front] += rest[4] - gap  # pieces that came or went before it
+    rest[0], rest[3] = end, front
 
 
 @kernel(inline=False)
@@ -122,34 +188,44 @@ def thinned(G, S, last, count, room, effort):
 
     Knots that were tried in vain are passed over until one nearby goes. Bounded: one fit a copy of a knot.
     """
-    frame = room.frame
+    frame, rest = room.frame, room.frame.rest
+    parted(G, S, last, count, 0, effort.chunk, room)
     h, times, around = frame.h, frame.times, DEGREE + 1 if frame.times[0] < DEGREE else 1
     k, j = around, 0
     while k <= count - around:
+        if rest[0] < count and k + effort.reach + FELT >= rest[0]:
+            pulled(G, S, last, count, effort.chunk, room)
+        e, front = rest[0], rest[3]
         if frame.fixed[k] or frame.tried[k]:
             k += 1
             continue
-        k0, k1 = window_around(frame, k - 1, k, effort.reach, count)
-        ja, jb = samples_around(S.u, last, j, k0, k1)
+        k0, k1 = window_around(frame, k - 1, k, effort.reach, e)
+        ja, jb = samples_around(S.u, front, j, k0, k1)
         j = ja
         kept_frame(G, S, k0, k1, ja, jb, room, 1)
-        for i in range(k - 1, count + 1):
+        for i in range(k - 1, e + 1):
             frame.lengths[i], frame.counts[i] = h[i], times[i]
-        merged = loosened(S, k, k0, k1, ja, jb, count, room)
+        merged = loosened(S, k, k0, k1, ja, jb, e, room)
         netted(G, k0, k1 - merged, room)
         worst = fitted(G, k0, k1 - merged, S, ja, jb, room, effort.steps)
         if worst <= TARGET and not (effort.simple and tangled(G, S, k0, k1 - merged, ja, jb, room)):
-            closed_up(G, S, last, k, k1, jb, count, merged, room)
+            closed_up(G, S, front, k, k1, jb, e, merged, room)
             count -= merged
+            if e < count + merged:
+                rest[1] += merged
+                rest[2] += 1
+            rest[0] -= merged
             for i in range(max(k - effort.reach, 1), min(k + effort.reach, count)):
                 frame.tried[i] = 0
         else:
-            for i in range(k - 1, count + 1):
+            for i in range(k - 1, e + 1):
                 h[i], times[i] = frame.lengths[i], frame.counts[i]
-            framed(frame, k0, k1, count)
+            framed(frame, k0, k1, e)
             restored_frame(G, S, k0, k1, ja, jb, room, 1)
             frame.tried[k] = 1
             k += 1
+    while rest[0] < count:
+        pulled(G, S, last, count, effort.chunk, room)
     return count
 
 
@@ -193,33 +269,43 @@ def mended(G, S, last, count, most, places, room, effort):
     Given up, with most + 1, when there are more than `most`. All pieces are looked at, whatever
     the `places`. Near the start of a closed curve no knot is put in.
     """
-    frame, around = room.frame, 1 if room.frame.times[0] < DEGREE else 0
+    frame, rest, around = room.frame, room.frame.rest, 1 if room.frame.times[0] < DEGREE else 0
+    parted(G, S, last, count, most - count, effort.chunk, room)
     k, j = around, 0
     while k < count - around:
-        ja, jb = samples_around(S.u, last, j, k, k)
+        if rest[0] < count and k + effort.reach + FELT >= rest[0]:
+            pulled(G, S, last, count, effort.chunk, room)
+        e, front = rest[0], rest[3]
+        ja, jb = samples_around(S.u, front, j, k, k)
         j = ja
         worst = measured(G, k, k, S, ja, jb, room, 0, 0, math.inf, 0.0)[1]
         if worst > TARGET:
-            k0, k1 = window_around(frame, k, k, effort.reach, count)
-            ja, jb = samples_around(S.u, last, j, k0, k1)
+            k0, k1 = window_around(frame, k, k, effort.reach, e)
+            ja, jb = samples_around(S.u, front, j, k0, k1)
             kept_frame(G, S, k0, k1, ja, jb, room, 1)
             if fitted(G, k0, k1, S, ja, jb, room, effort.steps) > TARGET:
                 restored_frame(G, S, k0, k1, ja, jb, room, 1)
                 if around and not DEGREE < k < count - DEGREE - 1:  # a knot here would be felt across the start
                     k += 1
                     continue
-                if count == most:
+                if count == most or (e < count and rest[1] == 0):
                     return most + 1
                 if k > k0 and frame.h[k - 1] > 2 * frame.h[k]:  # a longer piece next to it
                     k -= 1 if not around or k > DEGREE + 1 else 0
                 elif k < k1 and frame.h[k + 1] > 2 * frame.h[k]:
                     k += 1
-                tightened(G, S, last, k, count, room)
-                count += 1
-                k0, k1 = window_around(frame, k, k + 1, effort.reach, count)
-                ja, jb = samples_around(S.u, last, ja, k0, k1)
+                tightened(G, S, front, k, e, room)
+                if e < count:
+                    rest[1] -= 1
+                    rest[2] -= 1
+                count, e = count + 1, e + 1
+                rest[0] = e
+                k0, k1 = window_around(frame, k, k + 1, effort.reach, e)
+                ja, jb = samples_around(S.u, front, ja, k0, k1)
                 fitted(G, k0, k1, S, ja, jb, room, effort.steps)
                 k = k0
                 continue
         k += 1
+    while rest[0] < count:
+        pulled(G, S, last, count, effort.chunk, room)
     return count

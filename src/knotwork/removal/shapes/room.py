@@ -50,6 +50,8 @@ class Frame(NamedTuple):
     counts: Array
     t: Array
     row: Array
+    #: what is not in its place for now: see `parted`
+    rest: Array
 
 
 class Room(NamedTuple):
@@ -101,7 +103,7 @@ def frame(pieces: int, d: int) -> Frame:
     return Frame(
         np.zeros(pieces), np.zeros(pieces, np.int64), *flags, np.zeros(pieces, np.int64), np.zeros((pieces, 4, 4)),
         np.zeros((pieces, d)), np.zeros((3, pieces, d)), np.zeros(pieces), np.zeros(pieces, np.int64), np.zeros(6),
-        np.zeros(4),
+        np.zeros(4), np.zeros(5, np.int64),
     )  # fmt: skip
 
 

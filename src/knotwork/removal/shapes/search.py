@@ -44,6 +44,8 @@ class Effort(NamedTuple):
     simple: bool
     #: pieces of a smooth curve on each side of a knot that are fitted again
     reach: int = 0
+    #: pieces of a smooth curve that are in their place at once: what goes or comes moves only those behind it
+    chunk: int = 0
 
 
 class Found(NamedTuple):

@@ -37,6 +37,8 @@ HELP = 6
 LEAST = 1e-6
 
 
+#: pieces in their place at once
+CHUNK = 256
 #: the certificate with knots put in where it fails
 certified_smooth = certified.variant(repaired=mended)
 
@@ -121,7 +123,7 @@ class SmoothSearch(Search):
     ) -> None:  # fmt: skip
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
         self.F, self.hard, self.progress, self.passes = F, hard, progress, how.passes
-        self.effort = effort._replace(reach=how.reach)
+        self.effort = effort._replace(reach=how.reach, chunk=CHUNK)
         self.G, self.samples, self.room = self.space.G, self.space.samples, self.space.room
         self.target, self.most = float(given.target()[0]), pieces - 8
         self.count = self.end = self.last = 0
