@@ -124,3 +124,10 @@ def test_what_has_none_is_refused():
     with pytest.raises(ParameterError, match="trim"):
         kw.length(kw.curve([[0, 0], [1, 0]], 1), 0.5, 0.25)
     assert kw.by_length(kw.curve([[0, 0], [1, 0]], 1), []).value.shape == (0,)
+
+
+def test_binomials_of_high_degrees_do_not_overflow():
+    """Of an arc that was raised to degree 30 the speed is a root of degree beyond a thousand on the way."""
+    arc = kw.curve([[1, 0], [1, 1], [0, 1]], 2, weights=[1, np.sqrt(0.5), 1])
+    found = kw.length(kw.elevate(arc, 28))
+    assert abs(found.value - np.pi / 2) <= found.bound < 1e-6

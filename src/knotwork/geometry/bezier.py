@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+import operator
+from fractions import Fraction
 from math import comb
 from typing import Any
 
@@ -31,11 +34,18 @@ def product(p: Array, q: Array) -> Array:
     if m > n:
         return product(q, p)
     result = np.zeros((max(len(p), len(q)), m + n + 1), np.result_type(p, q))
+    shares = _shares(m, n, result.dtype == object)
     for i in range(m + 1):
-        row = [comb(m, i) * comb(n, j) for j in range(n + 1)]
-        result[:, i : i + n + 1] += p[:, i, None] * (q * np.array(row, result.dtype))
-    result /= np.array([comb(m + n, k) for k in range(m + n + 1)], result.dtype)
+        result[:, i : i + n + 1] += p[:, i, None] * (q * shares[i])
     return result
+
+
+@functools.lru_cache(256)
+def _shares(m: int, n: int, fractions: bool) -> Array:
+    """Return α_ij, of which each is rounded once: binomials of high degrees are beyond floats, their ratios are not."""
+    divide = Fraction if fractions else operator.truediv
+    rows = [[divide(comb(m, i) * comb(n, j), comb(m + n, i + j)) for j in range(n + 1)] for i in range(m + 1)]
+    return np.array(rows, object if fractions else np.float64)
 
 
 def halves(nets: Array, axis: int = 1, at: Any = None) -> tuple[Array, Array]:
