@@ -46,7 +46,7 @@ class PartCompiler(compiler.CompilerBase):  # type: ignore[misc]
 
     def define_pipelines(self) -> list[Any]:
         """Return the usual steps."""
-        self.state.library = PartLibrary(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        self.state["library"] = PartLibrary(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
         return [compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)]
 
 

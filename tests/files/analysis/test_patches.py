@@ -3,6 +3,7 @@
 import contextlib
 import io
 import struct
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -105,6 +106,12 @@ def test_a_structure_of_the_toolbox_in_a_cell_and_in_a_structure():
     assert len(arcs) == 2
     for arc in arcs:
         assert np.allclose(np.linalg.norm(arc(np.linspace(0, 1, 9)), axis=1), 1)
+
+
+def test_without_scipy_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "scipy.io", None)
+    with pytest.raises(ImportError, match="pip install scipy"):
+        toolbox.decode(b"MATLAB 5.0", no_remark)
 
 
 def test_a_disc_of_mfem_is_round():

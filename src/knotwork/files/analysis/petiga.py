@@ -15,6 +15,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.analysis.patches import patch, patches
+from knotwork.knots import nodes
 from knotwork.spline import Spline
 
 #: the marks of a patch and of a vector
@@ -72,8 +73,8 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
         net = numbers.vector((dim + 1) * math.prod(sizes)).reshape(*sizes[::-1], dim + 1)
         net = net.transpose(*range(len(sizes))[::-1], len(sizes))
     else:
-        nodes = [np.convolve(t[1:-1], np.full(n, 1 / n), "valid") for n, t in zip(degrees, knots, strict=True)]
-        net = np.stack([*np.meshgrid(*nodes, indexing="ij"), np.ones(sizes)], axis=-1)
+        axes = [nodes(t, n, size) for n, t, size in zip(degrees, knots, sizes, strict=True)]
+        net = np.stack([*np.meshgrid(*axes, indexing="ij"), np.ones(sizes)], axis=-1)
     if there & 2:
         remark("the fields over the patch are left out")
     return [patch("the patch", degrees, knots, net)]

@@ -29,8 +29,9 @@ def _scipy() -> Any:
 
 def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
     """Return the patches of all structures, in the order of the names of the variables."""
+    reader = _scipy()
     try:
-        variables = _scipy().loadmat(io.BytesIO(data))
+        variables = reader.loadmat(io.BytesIO(data))
     except NotImplementedError:
         raise FileError("a MATLAB file of version 7.3 given; save it with -v7") from None
     except Exception as exc:  # SciPy tells of damage in many ways
