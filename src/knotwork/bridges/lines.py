@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from knotwork.errors import PointError
-from knotwork.geometry.lengths import increasing
+from knotwork.geometry.lengths import increasing, linear
 from knotwork.insertion import to_bezier
-from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 
@@ -22,9 +21,7 @@ def polyline(points: Any, ring: bool) -> Spline:
         raise PointError("a line of one place given; expected two or more different points")
     closed = ring and len(points) > 3
     t = increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), closed)
-    if closed:
-        return Spline(SplineSpace(1, t, periodic=True), points[1:])
-    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)
+    return linear(points, t, closed)
 
 
 def corners(spline: Spline) -> Any:

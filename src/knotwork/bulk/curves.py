@@ -13,10 +13,10 @@ import numpy as np
 
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry import flatten
+from knotwork.geometry.lengths import linear
 from knotwork.removal import fit, reduce
 from knotwork.removal.shapes.reducing import reduce_shapes
 from knotwork.removal.tolerance import Relative
-from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 
@@ -133,8 +133,7 @@ def flatten_curves(splines: Sequence[Spline], tolerance: float) -> list[Outcome]
 
     def one(spline: Spline) -> Outcome:
         found = flatten(spline, tolerance)
-        t = found.parameters
-        return Outcome(Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), found.points), found.bound)
+        return Outcome(linear(found.points, found.parameters), found.bound)
 
     return [attempted(one, spline) for spline in splines]
 

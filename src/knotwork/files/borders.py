@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.files.lines import corners, polyline
-from knotwork.geometry.lengths import increasing
+from knotwork.files.lines import corners
+from knotwork.geometry.lengths import increasing, linear
 from knotwork.spline import Spline
 
 Vertex = tuple[float, ...]
@@ -85,7 +85,7 @@ class Arcs:
         for spline, pieces, start in zip(self.splines, self.pieces, self.starts, strict=True):
             chosen = [done[piece.arc] for piece in pieces]
             points, t = _together(chosen, pieces, start)
-            results.append((polyline(points, t, spline.space.periodic), max(bound for _, _, bound in chosen)))
+            results.append((linear(points, t, spline.space.periodic), max(bound for _, _, bound in chosen)))
         return results
 
 
@@ -115,7 +115,7 @@ def _forks(lines: list[list[Vertex]]) -> set[Vertex]:
 def _spline(arc: list[Vertex]) -> Spline:
     """Return an arc over its lengths."""
     points, loop = np.array(arc), arc[0] == arc[-1]
-    return polyline(points, increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), loop), loop)
+    return linear(points, increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), loop), loop)
 
 
 def _together(chosen: list[tuple[Array, Array, float]], pieces: list[Piece], start: float) -> tuple[Array, Array]:

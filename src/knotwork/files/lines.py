@@ -11,7 +11,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.places import Place
-from knotwork.geometry.lengths import increasing
+from knotwork.geometry.lengths import increasing, linear
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -133,16 +133,9 @@ def line(
     if len(different) < 2 or (different == different[0]).all():
         return None
     t = increasing(np.hypot.reduce(different[1:] - different[:-1], axis=1), closed)
-    spline = polyline(different, t, closed)
+    spline = linear(different, t, closed)
     parameters = t[np.cumsum(moves) - 1]
     return Line(span, rows, between, parameters, extras, points, spline, place._replace(closed=closed, straight=True))
-
-
-def polyline(points: Array, t: Array, closed: bool) -> Spline:
-    """Return the polyline that is at points at t; a closed one ends where it begins."""
-    if closed:
-        return Spline(SplineSpace(1, t, periodic=True), points[1:])
-    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)
 
 
 def corners(spline: Spline, name: str) -> tuple[Array, Array]:
@@ -186,7 +179,7 @@ def paced(reduction: Any, before: Spline) -> Spline:
     t = increasing(np.diff(u), after.space.periodic, u[0])
     if after.space.periodic:
         return Spline(SplineSpace(1, t, periodic=True), np.roll(after.coefficients, -start, axis=0))
-    return polyline(after.coefficients, t, False)
+    return linear(after.coefficients, t)
 
 
 def found(lines: Iterable[Line | None], remark: Callable[[str], None]) -> tuple[Line, ...]:

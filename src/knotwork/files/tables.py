@@ -15,8 +15,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, ParameterError
 from knotwork.files.layout import Layout, chosen_columns, is_comment, is_note, layout_of
 from knotwork.files.places import Place
-from knotwork.geometry.lengths import increasing
-from knotwork.space import SplineSpace
+from knotwork.geometry.lengths import increasing, linear
 from knotwork.spline import Spline
 
 #: a line with its end
@@ -290,9 +289,7 @@ def _curve(points: Array, block: list[int], repeats: Repeats, closed: bool | Non
         t = increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), closed)
     if not np.isfinite(t[-1]):
         raise FileError(f"line {block[0] + 1}: the length of this polyline overflows float64")
-    if closed:
-        return Spline(SplineSpace(1, t, periodic=True), points[1:])
-    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)
+    return linear(points, t, closed)
 
 
 def _require_polyline(spline: Spline, place: str) -> None:

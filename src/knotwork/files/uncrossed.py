@@ -11,9 +11,9 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
-from knotwork.files.lines import corners, polyline
+from knotwork.files.lines import corners
 from knotwork.geometry.edge_crossings import edge_crossings
-from knotwork.geometry.lengths import increasing
+from knotwork.geometry.lengths import increasing, linear
 from knotwork.spline import Spline
 
 #: how often the tolerance is halved before a part stays as it was
@@ -78,8 +78,7 @@ def uncrossed(
             finer[j] |= set(found[j].stands_for(b))
         if not finer:
             return [
-                (polyline(each.points, each.t, line.closed), each.bound)
-                for line, each in zip(lines, found, strict=True)
+                (linear(each.points, each.t, line.closed), each.bound) for line, each in zip(lines, found, strict=True)
             ]
         for i, edges in finer.items():
             lines[i].halvings[list(edges)] += 1
@@ -142,7 +141,7 @@ class _Line:
             P = np.concatenate([self.points, self.points[1:]])
             t = np.concatenate([self.t, self.t[1:] + (self.t[-1] - self.t[0])])
             runs = [
-                self._run(polyline(P[a : b + 1], t[a : b + 1], False), a, int(h[a % n]), tolerance, reduce)
+                self._run(linear(P[a : b + 1], t[a : b + 1], False), a, int(h[a % n]), tolerance, reduce)
                 for a, b in pairwise(cuts)
             ]
             part = _chained(runs, n)

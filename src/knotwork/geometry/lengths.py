@@ -7,6 +7,8 @@ import math
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.space import SplineSpace
+from knotwork.spline import Spline
 
 #: the least length of a piece of a closed curve, as a part of the whole: more than a period needs between its knots
 SHORTEST = 2.0**-28
@@ -31,3 +33,10 @@ def increasing(lengths: Array, closed: bool = False, start: float = 0.0) -> Arra
             t[i] = np.nextafter(t[i - 1], np.inf)
             i += 1
     return t
+
+
+def linear(points: Array, t: Array, closed: bool = False) -> Spline:
+    """Return the curve of degree 1 that is at points at increasing t; a closed one ends where it begins."""
+    if closed:
+        return Spline(SplineSpace(1, t, periodic=True), points[1:])
+    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)

@@ -8,10 +8,9 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_floats, real_array
 from knotwork.errors import ParameterError, PointError
-from knotwork.geometry.lengths import increasing
+from knotwork.geometry.lengths import increasing, linear
 from knotwork.removal.faces import reduce
 from knotwork.removal.result import Progress, Reduction
-from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 
@@ -108,6 +107,4 @@ def _polyline(P: Array, t: Array | None, closed: bool) -> Spline:
         t = increasing(np.sqrt((np.diff(P, axis=0) ** 2).sum(axis=1)), closed)
         if not np.isfinite(t[-1]):
             raise PointError("the length of the polyline overflows float64")
-    if closed:
-        return Spline(SplineSpace(1, t, periodic=True), P[1:])
-    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), P)
+    return linear(P, t, closed)
