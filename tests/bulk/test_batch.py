@@ -16,7 +16,8 @@ import pytest
 import knotwork as kw
 from bulk.poison import Numbers
 from knotwork.bulk import fit_curves, flatten_curves, reduce_curves
-from knotwork.bulk.parts import Job, Tally, begun, hunt, marked
+from knotwork.bulk.blame import hunt
+from knotwork.bulk.parts import Bites, Job, Tally, begun, marked
 from knotwork.bulk.processes import run
 from knotwork.errors import FileError, ParameterError
 
@@ -59,7 +60,7 @@ def children(pid: int) -> list[int]:
     for each in Path("/proc").glob("[0-9]*"):
         try:
             parent = int((each / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == pid and b"spawn_main" in (each / "cmdline").read_bytes():
+            if parent == pid and b"knotwork.bulk" in (each / "cmdline").read_bytes():
                 found.append(int(each.name))
         except OSError:
             continue
@@ -113,6 +114,71 @@ def test_what_kills_its_process_fails_alone(tmp_path: Path) -> None:
     assert [where for t in tallies for where, _ in t.failures] == ["number 6"]
     assert (tmp_path / "4.txt").read_text() == "4 5 7"
     assert all(marked(job, n) for n in range(2))
+
+
+def test_what_takes_too_long_fails_alone(tmp_path: Path) -> None:
+    source = Numbers(((0, 40), (40, 80)), endless=frozenset({7, 79}), deadly=frozenset({41}), heavy=frozenset({20}))
+    job = Job(source, tmp_path, limit=1.0)
+    begun(job, {})
+    tallies: list[Tally] = []
+    run(job, range(2), 2, tallies.append)
+    assert sorted((t.given, t.made, t.failed) for t in tallies) == [(40, 38, 2), (40, 39, 1)]
+    late = "it takes longer than 1 s"
+    assert sorted(f for t in tallies for f in t.failures) == [
+        ["number 41", "the process that worked on it died, several times"],
+        *([f"number {i}", late] for i in (7, 79)),
+    ]
+    assert (tmp_path / "0.txt").read_text().split() == [str(i) for i in range(40) if i != 7]
+    assert (tmp_path / "40.txt").read_text().split() == [str(i) for i in range(40, 80) if i not in (41, 79)]
+
+
+def test_bites_are_each_unit_once_and_single_where_that_is_asked() -> None:
+    told: list[tuple[int, int]] = []
+    spans = list(Bites(3600.0, frozenset({5, 6, 30}), lambda lo, hi: told.append((lo, hi)))(2, 60))
+    assert spans == told
+    assert [i for lo, hi in spans for i in range(lo, hi)] == list(range(2, 60))
+    assert {(2, 3), (5, 6), (6, 7), (30, 31)} <= set(spans)
+    assert max(hi - lo for lo, hi in spans) > 4
+    assert list(Bites()(2, 60)) == [(2, 60)]
+
+
+@pytest.mark.slow
+def test_a_row_that_takes_too_long_costs_itself(tmp_path: Path) -> None:
+    rows = tracks(30)
+    rows[13] = np.random.default_rng(1).normal(size=(100_000, 2)).tolist()  # a minute and more, without compiling
+    given = table(tmp_path / "tracks.parquet", rows)
+    how = ("-t", "0.1", "--form", "bezier", "--part", 10, "--json")
+    ends = []
+    for workers in (1, 2):
+        out = tmp_path / f"out{workers}"
+        process = command("reduce", given, out, *how, "--time-limit", 2, "--workers", workers)
+        told, err = process.communicate()
+        assert process.returncode == 0, err
+        assert json.loads(told)["failed"] == 1
+        ends.append(content(out))
+    assert ends[0] == ends[1]
+    failures = ends[0]["_batch/failures.csv"].decode().splitlines()[1:]
+    assert failures == [f"{given}: row 13,it takes longer than 2 s"]
+    names = [row for path in sorted(out.glob("*.parquet")) for row in pq.read_table(path)["name"].to_pylist()]
+    assert names == [f"n{i}" for i in range(30) if i != 13]
+    with pytest.raises(FileError, match="holds parts of a job with other options"):
+        kw.batch("reduce", given, out, tolerance=0.1, form="bezier", part=10, time_limit=3)
+
+
+def test_no_process_at_all_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    (tmp_path / "a.csv").write_text("0,0\n1,1\n")
+    with pytest.raises(FileError, match="no process can be started"):
+        kw.batch("convert", tmp_path / "a.csv", tmp_path / "out", workers=1)
+
+
+def test_no_script_has_to_guard_itself_against_its_own_processes(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("0,0\n1,1\n")
+    script = tmp_path / "script.py"
+    script.write_text("import knotwork as kw\nprint(kw.batch('convert', 'a.csv', 'out', workers=2).made)\n")
+    env = {**os.environ, "PYTHONPATH": str(Path(kw.__file__).parents[1])}
+    told = subprocess.run([sys.executable, script], env=env, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert (told.stdout, told.stderr) == ("1\n", "")
 
 
 def hunted(deadly: int | None) -> int | None:
@@ -261,6 +327,8 @@ def test_what_makes_no_sense_is_told_before_any_work(tmp_path: Path) -> None:
         ("reduce", {}, "no tolerance given"),
         ("flatten", {"tolerance": 1, "form": "bezier"}, "option 'form' given; 'flatten' takes tolerance"),
         ("reduce", {"tolerance": 1, "workers": -1}, "workers -1 given"),
+        ("convert", {"time_limit": 0}, "time_limit 0 given; expected seconds"),
+        ("convert", {"time_limit": 1, "workers": 0}, "only other processes can be stopped"),
     ):
         with pytest.raises(ParameterError, match=message):
             kw.batch(task, tmp_path, tmp_path / "out", **how)

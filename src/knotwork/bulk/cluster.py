@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from knotwork.bulk.blame import Blame, Task
 from knotwork.bulk.parts import Job, Tally, probe, run_part
-from knotwork.bulk.processes import Deaths, Task
+from knotwork.bulk.processes import run_apart
 from knotwork.errors import FileError, MissingExtraError
 
 
 def run(job: Job, numbers: Iterable[int], scheduler: str, done: Callable[[Tally], None]) -> None:
     """Do parts on a cluster, and tell of each that is done.
+
+    With a time limit each part is done in a process of its own beside the worker, which cannot be stopped itself.
 
     Raises
     ------
@@ -28,18 +31,22 @@ def run(job: Job, numbers: Iterable[int], scheduler: str, done: Callable[[Tally]
         client = Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as exc:
         raise FileError(f"{scheduler}: no scheduler answers: {exc}") from exc
-    deaths = Deaths(job)
+    blame = Blame(job)
     tasks: dict[Any, Task] = {}
 
     def begun(task: Task) -> Any:
-        work, *more = (run_part, task.skip) if task.span is None else (probe, *task.span, task.skip)
-        future = client.submit(work, shared, task.number, *more, pure=False)
+        if task.span is not None:
+            future = client.submit(probe, shared, task.number, *task.span, task.skip, pure=False)
+        elif job.limit is None:
+            future = client.submit(run_part, shared, task.number, task.skip, pure=False)
+        else:
+            future = client.submit(run_apart, shared, task.number, pure=False)
         tasks[future.key] = task
         return future
 
     with client:
         shared = client.scatter(job, broadcast=True)
-        waiting = as_completed([begun(Task(n, frozenset())) for n in numbers], loop=client.loop)
+        waiting = as_completed([begun(Task(n)) for n in numbers], loop=client.loop)
         for future in waiting:
             task = tasks.pop(future.key)
             try:
@@ -50,6 +57,6 @@ def run(job: Job, numbers: Iterable[int], scheduler: str, done: Callable[[Tally]
                 raise FileError(f"part {task.number}: {' '.join(str(exc).split()) or type(exc).__name__}") from exc
             if isinstance(answer, Tally):
                 done(answer)
-            follows = deaths.after(task, died)
+            follows = blame.after(task, died)
             if follows is not None:
                 waiting.add(begun(follows))

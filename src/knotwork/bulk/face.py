@@ -76,6 +76,7 @@ def batch(
     *,
     workers: int | None = None,
     scheduler: str | None = None,
+    time_limit: float | None = None,
     part: int = 2000,
     to: str | None = None,
     column: str | None = None,
@@ -97,6 +98,8 @@ def batch(
         from a crash. Results do not depend on it.
     scheduler : str, optional
         The address of a Dask scheduler, whose workers do the parts instead; they must see the same files.
+    time_limit : float, optional
+        Seconds that a file or a row may take; one that takes longer is stopped, and fails. Compiling does not count.
     part : int
         Rows in a part.
     to : str, optional
@@ -117,7 +120,7 @@ def batch(
     Raises
     ------
     ParameterError
-        If the task or an option is not known.
+        If the task or an option is not known, or there is a time limit and no process to be stopped.
     FileError
         If there is nothing to be done, the folder holds another job, or results cannot be written: what is done stays.
 
@@ -126,7 +129,9 @@ def batch(
     Each part is written to a temporary name and renamed when it is complete, and then marked as done. A process that
     dies is replaced and its part done again; if it dies again, the curve that kills it is found by halves, and fails.
 
-    A script that calls this needs ``if __name__ == "__main__":`` around what it does, for each process reads it again.
+    The time limit is of the clock. A unit that is late fails only if it is late again by itself, in a process where all
+    that it needs is loaded: so what takes far less, or far more, has the same end on every machine and with any number
+    of workers.
 
     Examples
     --------
@@ -145,16 +150,18 @@ def batch(
     count = processors() if workers is None else workers
     if not isinstance(count, int) or count < 0:
         raise ParameterError(f"workers {workers!r} given; expected 0 or more")
+    _check_limit(time_limit, count, scheduler)
     if _is_parquet(given):
         if to is not None:
             raise ParameterError(f"to {to!r} given; rows of Parquet stay rows of Parquet")
         source: Any = rows.source(task, chosen, given, part, column)
     else:
         source = folders.source(task, chosen, given, place, to)
-    job = Job(source, place)
+    job = Job(source, place, time_limit)
+    told = {"task": task, "options": options, "to": to}
     begin = time.monotonic()
     with _alone(place):
-        begun(job, {"task": task, "options": options, "to": to})
+        begun(job, told if time_limit is None else {**told, "time_limit": time_limit})
         before = [n for n in range(len(source.parts)) if job.mark(n).exists()]
         todo = sorted(set(range(len(source.parts))) - set(before))
         tell = _telling(job, before, begin, progress)
@@ -180,6 +187,15 @@ def _checked(task: str, options: dict[str, Any]) -> dict[str, Any]:
     if "tolerance" in OPTIONS[task] and "tolerance" not in chosen:
         raise ParameterError(f"no tolerance given; {task!r} needs one")
     return chosen
+
+
+def _check_limit(limit: float | None, workers: int, scheduler: str | None) -> None:
+    if limit is None:
+        return
+    if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0 < limit < float("inf"):
+        raise ParameterError(f"time_limit {limit!r} given; expected seconds, more than 0")
+    if workers == 0 and scheduler is None:
+        raise ParameterError("time_limit with workers=0 given; only other processes can be stopped: expected 1 or more")
 
 
 def _is_parquet(given: str) -> bool:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import glob
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from knotwork.bulk.curves import TASKS, Outcome, told
-from knotwork.bulk.parts import BOOKS, POISON, Unit
+from knotwork.bulk.parts import BOOKS, Bites, Unit
 from knotwork.errors import FileError
 from knotwork.files.document import Document, document_of
 from knotwork.files.formats import SUFFIXES, decoded, encoded, fetched, format_of
@@ -48,11 +48,13 @@ class Files:
         """Return names, sizes and times of the files."""
         return [[str(p), str(q), p.stat().st_size, p.stat().st_mtime_ns] for p, q in self.files]
 
-    def work(self, part: Any, lo: int, hi: int, skip: frozenset[int], output: Path | None) -> Iterator[Unit]:
+    def work(
+        self, part: Any, lo: int, hi: int, skip: Mapping[int, str], output: Path | None, bites: Bites
+    ) -> Iterator[Unit]:
         """Do some files of a part."""
-        for i in range(lo, hi):
+        for i in (i for bite in bites(lo, hi) for i in range(*bite)):
             path, name = self.files[part[0] + i]
-            yield self._one(path, output / name if output else None, name) if i not in skip else _failed(path, POISON)
+            yield _failed(path, skip[i]) if i in skip else self._one(path, output / name if output else None, name)
 
     def _one(self, path: Path, target: Path | None, name: Path) -> Unit:
         """Do one file; what cannot be written because of the disk passes as an error."""

@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import time
 import warnings
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -33,6 +34,41 @@ class Unit(NamedTuple):
     notes: list[str]
 
 
+class Bites:
+    """Divides units into what is done at once: all, or so few that a time limit tells which of them takes long.
+
+    With a limit the first bite is one unit, and the others are as many as should take a small share of the limit.
+    """
+
+    #: the share
+    SHARE = 8
+
+    def __init__(
+        self,
+        limit: float | None = None,
+        alone: frozenset[int] = frozenset(),
+        begins: Callable[[int, int], None] = lambda lo, hi: None,
+    ) -> None:
+        self._limit, self._alone, self._begins = limit, alone, begins
+
+    def __call__(self, lo: int, hi: int) -> Iterator[tuple[int, int]]:
+        """Yield lo … hi − 1 in bites, each when the one before is done, and tell of each that begins."""
+        if self._limit is None:
+            yield lo, hi
+            return
+        size = 1
+        while lo < hi:
+            end = min(lo + size, hi)
+            end = next((i for i in range(lo, end) if i in self._alone), end)
+            end = max(end, lo + 1)
+            self._begins(lo, end)
+            start = time.monotonic()
+            yield lo, end
+            each = (time.monotonic() - start) / (end - lo)
+            size = max(1, min(2 * size, int(self._limit / self.SHARE / max(each, 1e-9))))
+            lo = end
+
+
 class Source(Protocol):
     """Where curves come from and where they go: files, or rows of tables."""
 
@@ -43,8 +79,10 @@ class Source(Protocol):
         """Return how many units a part has."""
         ...
 
-    def work(self, part: Any, lo: int, hi: int, skip: frozenset[int], output: Path | None) -> Iterator[Unit]:
-        """Do the units lo … hi − 1 of a part, and write them unless there is no output."""
+    def work(
+        self, part: Any, lo: int, hi: int, skip: Mapping[int, str], output: Path | None, bites: Bites
+    ) -> Iterator[Unit]:
+        """Do the units lo … hi − 1 of a part in bites, and write them unless there is no output; pass over some."""
         ...
 
     def described(self) -> list[Any]:
@@ -57,6 +95,12 @@ class Job(NamedTuple):
 
     source: Any
     output: Path
+    #: seconds that a unit may take
+    limit: float | None = None
+
+    def units(self, number: int) -> int:
+        """Return how many units a part has."""
+        return int(self.source.count(self.source.parts[number]))
 
     def mark(self, number: int) -> Path:
         """Return the path of the mark of a part."""
@@ -78,9 +122,10 @@ class Tally(NamedTuple):
 
 #: why a curve has no result on which a worker died again and again
 POISON = "the process that worked on it died, several times"
+NOTHING: Mapping[int, str] = {}
 
 
-def run_part(job: Job, number: int, skip: frozenset[int] = frozenset()) -> Tally:
+def run_part(job: Job, number: int, skip: Mapping[int, str] = NOTHING, bites: Bites | None = None) -> Tally:
     """Do one part, unless it is done: for any engine that maps functions over numbers.
 
     Parameters
@@ -88,8 +133,10 @@ def run_part(job: Job, number: int, skip: frozenset[int] = frozenset()) -> Tally
     job : Job
     number : int
         Which part.
-    skip : frozenset of int
-        Units of the part that are passed over, as failed.
+    skip : mapping from int to str
+        Units of the part that are passed over, and why they have failed.
+    bites : Bites, optional
+        How many units are done at once; by default all.
     """
     found = marked(job, number)
     if found is not None:
@@ -99,7 +146,7 @@ def run_part(job: Job, number: int, skip: frozenset[int] = frozenset()) -> Tally
     bound, failures, notes = 0.0, [], []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what files leave out is in the notes, and every bound is written
-        for unit in job.source.work(part, 0, job.source.count(part), skip, job.output):
+        for unit in job.source.work(part, 0, job.units(number), skip, job.output, bites or Bites()):
             given += len(unit.outcomes)
             for i, each in enumerate(unit.outcomes):
                 if each.spline is None:
@@ -109,16 +156,16 @@ def run_part(job: Job, number: int, skip: frozenset[int] = frozenset()) -> Tally
                     made += 1
                     bound = max(bound, each.bound)
             notes += [[unit.where, note] for note in unit.notes]
-    tally = Tally(given, made, len(failures), bound, job.source.count(part), failures, notes)
+    tally = Tally(given, made, len(failures), bound, job.units(number), failures, notes)
     if given != made + len(failures):
         raise FileError(f"part {number}: {given} curves came in, {made} went out and {len(failures)} failed")
     replace(job.mark(number), json.dumps(tally._asdict()).encode())
     return tally
 
 
-def probe(job: Job, number: int, lo: int, hi: int, skip: frozenset[int]) -> int:
+def probe(job: Job, number: int, lo: int, hi: int, skip: Mapping[int, str], bites: Bites | None = None) -> int:
     """Do some units of a part and write nothing: to see whether the process lives. Return how many they are."""
-    return sum(1 for _ in job.source.work(job.source.parts[number], lo, hi, skip, None))
+    return sum(1 for _ in job.source.work(job.source.parts[number], lo, hi, skip, None, bites or Bites()))
 
 
 def marked(job: Job, number: int) -> Tally | None:
@@ -150,17 +197,3 @@ def begun(job: Job, told: dict[str, Any]) -> None:
         )
     for left in job.output.rglob(".*.part"):  # of processes that were killed
         left.unlink(missing_ok=True)
-
-
-def hunt(count: int) -> Generator[tuple[int, int], bool, int | None]:
-    """Find the unit on which a process dies, by halves: yields (lo, hi) to be probed, is sent whether it died.
-
-    Returns the unit, or None if nothing dies any more.
-    """
-    lo, hi = 0, count
-    while hi - lo > 1:
-        middle = (lo + hi) // 2
-        died = yield lo, middle
-        lo, hi = (lo, middle) if died else (middle, hi)
-    died = yield lo, hi
-    return lo if died else None

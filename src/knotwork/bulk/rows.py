@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import glob
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from knotwork.bulk.parquet import (
     require,
     with_bounds,
 )
-from knotwork.bulk.parts import POISON, Unit
+from knotwork.bulk.parts import Bites, Unit
 from knotwork.errors import FileError
 from knotwork.files.storage import replace
 
@@ -46,7 +46,9 @@ class Rows:
         files = [[str(p), p.stat().st_size, p.stat().st_mtime_ns] for p in self.files]
         return [files, self.parts, self.column]
 
-    def work(self, part: Any, lo: int, hi: int, skip: frozenset[int], output: Path | None) -> Iterator[Unit]:
+    def work(
+        self, part: Any, lo: int, hi: int, skip: Mapping[int, str], output: Path | None, bites: Bites
+    ) -> Iterator[Unit]:
         """Do some rows of a part; those that do not fail are written."""
         file, group, first, _ = part
         path = self.files[file]
@@ -54,14 +56,17 @@ class Rows:
             table, start = _group(path, group, path.stat().st_mtime_ns)
             table = table.slice(first + lo, hi - lo)
             encoding = encoding_of(table.schema, self.column)
-            read = [POISON if lo + k in skip else row for k, row in enumerate(encoding.read(table))]
+            read = [skip.get(lo + k, row) for k, row in enumerate(encoding.read(table))]
         except Exception as exc:  # of any kind: a damaged file costs its own rows
             yield from (Unit(f"{path}: row {first + k}", [Outcome(None, error=told(exc))], []) for k in range(lo, hi))
             return
         same = self.same(encoding)
         good = {k: row for k, row in enumerate(read) if not isinstance(row, str) and (same or len(row) == 1)}
-        done = iter(TASKS[self.task]([spline for row in good.values() for spline in row], **self.options))
-        rows = {k: list(itertools.islice(done, len(row))) for k, row in good.items()}
+        rows: dict[int, list[Outcome]] = {}
+        for a, b in bites(lo, hi):
+            some = {k: good[k] for k in range(a - lo, b - lo) if k in good}
+            done = iter(TASKS[self.task]([spline for row in some.values() for spline in row], **self.options))
+            rows |= {k: list(itertools.islice(done, len(row))) for k, row in some.items()}
         whole = {k: each for k, each in rows.items() if all(o.spline is not None for o in each)}
         if output is not None and whole:
             made = [[o.spline for o in each if o.spline is not None] for each in whole.values()]

@@ -32,6 +32,7 @@ SELDOM = 30.0
 )
 @click.option("--workers", type=click.IntRange(0), help="How many processes.  [default: one per processor]")
 @click.option("--scheduler", metavar="tcp://…", help="A Dask scheduler, whose workers do the work instead.")
+@click.option("--time-limit", type=float, metavar="SECONDS", help="A file or a row that takes longer fails.")
 @click.option("--part", type=click.IntRange(1, 10**6), default=2000, help="Rows in a part.  [default: 2000]")
 @click.option("--to", metavar="SUFFIX", help="Format of the files that are written, such as svg.")
 @click.option("--column", metavar="NAME", help="Column of Parquet files with points or WKB.")
@@ -47,6 +48,7 @@ def batch(
     tolerance: Tolerance | None,
     workers: int | None,
     scheduler: str | None,
+    time_limit: float | None,
     part: int,
     to: str | None,
     column: str | None,
@@ -70,8 +72,8 @@ def batch(
     line = _Line()
     try:
         done = kw.batch(
-            task, input, output, workers=workers, scheduler=scheduler, part=part, to=to, column=column,
-            progress=line.show, **options,
+            task, input, output, workers=workers, scheduler=scheduler, time_limit=time_limit, part=part, to=to,
+            column=column, progress=line.show, **options,
         )  # fmt: skip
     finally:
         line.close()
