@@ -69,8 +69,8 @@ class Sheet:
             self.page.keyboard.press("Escape")
 
     @contextmanager
-    def change(self, seconds=8):
-        """Wait for the next revision."""
+    def change(self, seconds=60):
+        """Wait for the next revision: kernels may be loaded or compiled meanwhile."""
         before = self.revision
         yield
         self.until("before => app.drawing.revision !== before", arg=before, seconds=seconds)
@@ -280,7 +280,7 @@ def test_a_long_curve_opens_pans_and_takes_strokes(sheet, tmp_path, record_prope
     sheet.page.evaluate("app.times.length = 0")
     for k in range(8):
         above = np.array([0, (30 + 5 * k) * (b[0] - a[0]) / 400])
-        with sheet.change(seconds=60):  # kernels may be compiled meanwhile
+        with sheet.change():
             sheet.draw(sheet.at((a + above).tolist()), sheet.at(b.tolist()))
     sheet.until("app.times.length === 8")
     assert abs(len(sheet.curves[0]["points"]) - vertices) < 100
@@ -384,6 +384,70 @@ def test_the_page_goes_on_when_the_editor_was_killed_and_started_again(browser, 
         assert sheet.curves[0]["points"][0] == drawn[0]["points"][0]
         sheet.page.reload()
         sheet.ready()
+        assert len(sheet.curves[0]["points"]) == 3
+    assert sheet.errors == []
+    context.close()
+
+
+BEFORE_THE_COMMIT = """
+import contextlib, sqlite3, threading
+from knotwork.editor.store import Store
+transaction, times = Store._transaction, []
+@contextlib.contextmanager
+def watched(self):
+    with transaction(self):
+        yield
+        if self._db.execute("SELECT MAX(number) FROM revisions").fetchone()[0] == 2:
+            times.append(threading.Event().wait({seconds}))
+            if len(times) == 1:
+                raise sqlite3.OperationalError("disk I/O error")
+Store._transaction = watched
+"""
+MARKED = "document.querySelector('#unsaved').classList.contains('shown')"
+
+
+def test_a_stroke_that_cannot_be_saved_is_drawn_marked_and_taken_back(browser, tmp_path):
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    with editor(tmp_path / "drawings.sqlite3", before=BEFORE_THE_COMMIT.format(seconds=1.5)) as served:
+        sheet = Sheet(context.new_page(), served.url)
+        sheet.begin()
+        with sheet.change():
+            sheet.draw((300, 500), (450, 300))
+        drawn = sheet.curves
+        assert not sheet.page.evaluate(MARKED)
+        sheet.draw((405, 330), (620, 280))
+        sheet.until(f"{MARKED} && app.drawing.curves[0].points.length === 3")
+        assert sheet.revision == 1
+        sheet.until("document.querySelector('#rule').textContent === 'Not done'")
+        assert sheet.page.inner_text("#reason") == "the change could not be saved: disk I/O error"
+        assert sheet.curves == drawn
+        assert not sheet.page.evaluate(MARKED)
+        sheet.draw((405, 330), (620, 280))
+        sheet.until(MARKED)
+        sheet.page.keyboard.press("Tab")
+        sheet.page.keyboard.press("Shift+ArrowUp")  # a vertex of what is not saved yet: this waits
+        sheet.until(f"!{MARKED} && app.drawing.revision === 3")
+        assert len(sheet.curves[0]["points"]) == 3
+        assert sheet.curves[0]["points"][0][1] > drawn[0]["points"][0][1]
+    assert sheet.errors == []
+    context.close()
+
+
+def test_a_stroke_that_was_drawn_but_not_saved_when_the_editor_died_is_said_again(browser, tmp_path):
+    store = tmp_path / "drawings.sqlite3"
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    with editor(store, before=BEFORE_THE_COMMIT.format(seconds=60)) as first:
+        sheet = Sheet(context.new_page(), first.url)
+        sheet.begin()
+        with sheet.change():
+            sheet.draw((300, 500), (450, 300))
+        sheet.draw((405, 330), (620, 280))
+        sheet.until(f"{MARKED} && app.drawing.curves[0].points.length === 3")
+        first.kill()
+    sheet.until("document.querySelector('#line').textContent !== ''")
+    assert sheet.page.evaluate(MARKED)
+    with editor(store):
+        sheet.until(f"!{MARKED} && app.drawing.revision === 2", seconds=20)
         assert len(sheet.curves[0]["points"]) == 3
     assert sheet.errors == []
     context.close()

@@ -36,11 +36,11 @@ class Served(NamedTuple):
 
 
 @contextmanager
-def editor(store, port=0, warm=False):
-    """Run the editor on a store until the block ends."""
+def editor(store, port=0, warm=False, before=""):
+    """Run the editor on a store until the block ends; `before` is Python that its process runs first."""
     source = str(Path(kw.__file__).parents[1])
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([source, os.environ.get("PYTHONPATH", "")])}
-    command = [sys.executable, "-c", START, str(store), str(port), "warm" if warm else ""]
+    command = [sys.executable, "-c", before + START, str(store), str(port), "warm" if warm else ""]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env) as process:
         try:
             url = process.stdout.readline().strip()

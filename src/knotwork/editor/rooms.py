@@ -1,14 +1,22 @@
-"""Who looks at which document: each change is committed, then told to every tab that has the document open."""
+"""Who looks at which document, and when each tab is told of a change.
+
+Who made it gets its picture at once, as not yet saved; then it is committed; then it is acknowledged, and told to every
+other tab. If it cannot be committed, the picture is taken back.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+import asyncio
+import contextlib
+from collections import defaultdict
+from collections.abc import Awaitable, Callable, Iterator
 from typing import Any
 
 from knotwork.editor import actions, lens, views
 from knotwork.editor.messages import Message
 from knotwork.editor.store import ConflictError, State, Store
 from knotwork.errors import KnotworkError
+from knotwork.sketch import Sketch
 from knotwork.spline import Spline
 
 Say = Callable[[dict[str, Any]], Awaitable[None]]
@@ -20,8 +28,7 @@ class Tab:
     def __init__(self, say: Say) -> None:
         self.say = say
         self.document: str | None = None
-        #: the revision and the views that it draws now
-        self.number = -1
+        #: the views that it draws now
         self.views: list[dict[str, Any]] = []
         #: the curves that the views are of
         self.curves: tuple[Spline, ...] = ()
@@ -34,6 +41,8 @@ class Rooms:
         self._store = store
         self._tabs: set[Tab] = set()
         self._states: dict[str, State] = {}
+        #: per document: its changes come one after the other, each told to all before the next
+        self._turns: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
 
     def enter(self, say: Say) -> Tab:
         """Let a tab in."""
@@ -76,11 +85,12 @@ class Rooms:
 
     async def bring(self, document: str, curves: list[Spline], suffix: str) -> str:
         """Add curves from a file to a document, and return what is to be said."""
-        state = self.state(document)
-        done = actions.add(state.sketch, curves, f"the {suffix[1:].upper()} file")
-        self._commit(document, state, done)
-        await self._tell(document, None)
-        return done.reason
+        async with self._turns[document]:
+            state = self.state(document)
+            done = actions.add(state.sketch, curves, f"the {suffix[1:].upper()} file")
+            self._commit(document, state, done.sketch, actions.as_action(done))
+            await self._tell(document, None)
+            return done.reason
 
     # ---- documents ----------------------------------------------------------------------------------------------
 
@@ -89,7 +99,7 @@ class Rooms:
 
     def _open(self, tab: Tab, document: str) -> dict[str, Any]:
         state = self.state(document)
-        tab.document, tab.number, tab.views, tab.curves = document, -1, [], ()
+        tab.document, tab.views, tab.curves = document, [], ()
         return self._news(tab, state)
 
     async def _document(self, tab: Tab, message: Message) -> dict[str, Any]:
@@ -112,33 +122,49 @@ class Rooms:
     # ---- changes ------------------------------------------------------------------------------------------------
 
     async def _change(self, tab: Tab, document: str, message: Message) -> dict[str, Any]:
-        state = self.state(document)
-        stale = "based on" in message and message.whole("based on", 0, 2**53) != state.number
-        key = message.text("key", 64) if "key" in message else None
-        if key and self._store.has(document, key):  # said again after the line broke
-            return self._news(tab, state)
-        if stale:  # so an undo that is said again is not done twice either
-            raise ConflictError("the drawing was changed elsewhere in the meantime; here it is")
-        if message.choice("do", ("undo", "redo", *actions.ACTIONS)) in ("undo", "redo"):
-            move = self._store.undo if message.values["do"] == "undo" else self._store.redo
-            try:
-                self._states[document] = move(document, state)
-            except ConflictError:
-                self._states.pop(document)
-                raise
-        else:
-            done = actions.perform(state.sketch, message)
-            if done.case == "ignored":
-                return {**self._news(tab, state), "case": done.case, "reason": done.reason}
-            self._commit(document, state, done, key)
-        news = self._news(tab, self._states[document])
-        await self._tell(document, tab)
-        return news
+        async with self._turns[document]:
+            state = self.state(document)
+            stale = "based on" in message and message.whole("based on", 0, 2**53) != state.number
+            key = message.text("key", 64) if "key" in message else None
+            if key and self._store.has(document, key):  # said again after the line broke
+                return self._news(tab, state)
+            if stale:  # so an undo that is said again is not done twice either
+                raise ConflictError("the drawing was changed elsewhere in the meantime; here it is")
+            if message.choice("do", ("undo", "redo", *actions.ACTIONS)) in ("undo", "redo"):
+                self._move(document, state, message.values["do"])
+            else:
+                done = actions.perform(state.sketch, message)
+                if done.case == "ignored":
+                    return {**self._news(tab, state), "case": done.case, "reason": done.reason}
+                await self._draw(tab, document, state, done, message)
+            await self._tell(document, tab)
+            return self._news(tab, self._states[document])
 
-    def _commit(self, document: str, state: State, done: actions.Done, key: str | None = None) -> None:
-        action = {**actions.as_action(done), "key": key}
+    async def _draw(self, tab: Tab, document: str, state: State, done: actions.Done, message: Message) -> None:
+        """Show a change to who made it, and commit it; if that fails, show again what is on disk."""
+        action = {**actions.as_action(done), "key": message.values.get("key")}
+        shown = State(state.number, done.sketch, (), action, undo=True, redo=False)
+        await tab.say({**self._news(tab, shown), "picture": message.values.get("id")})
         try:
-            self._states[document] = self._store.commit(document, state, done.sketch, action)
+            self._commit(document, state, done.sketch, action)
+        except Exception:
+            await tab.say({**self._news(tab, self.state(document)), "reason": ""})
+            raise
+
+    def _commit(self, document: str, state: State, sketch: Sketch, action: dict[str, Any]) -> None:
+        with self._forgetting(document):
+            self._states[document] = self._store.commit(document, state, sketch, action)
+
+    def _move(self, document: str, state: State, way: str) -> None:
+        with self._forgetting(document):
+            move = self._store.undo if way == "undo" else self._store.redo
+            self._states[document] = move(document, state)
+
+    @contextlib.contextmanager
+    def _forgetting(self, document: str) -> Iterator[None]:
+        """Read a document anew if another process has changed it."""
+        try:
+            yield
         except ConflictError:
             self._states.pop(document)
             raise
@@ -153,7 +179,7 @@ class Rooms:
         known = {id(curve): (curve, drawn) for curve, drawn in zip(tab.curves, tab.views, strict=True)}
         drawn = views.views(state.sketch, known)
         changes = _changes(tab.views, drawn)
-        tab.number, tab.views, tab.curves = state.number, drawn, state.sketch.curves
+        tab.views, tab.curves = drawn, state.sketch.curves
         return {
             "revision": state.number,
             "count": len(drawn),

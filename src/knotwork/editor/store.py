@@ -2,16 +2,17 @@
 
 Each state of a document is a revision: the order of its curves, and settings. Curves are rows of their own that later
 revisions share, so a stroke writes one curve and a line. Undo goes to the parent of a revision, redo to its youngest
-child. A revision is committed (write-ahead log, synchronised to disk) before anybody hears that it is there.
+child. A revision is committed (write-ahead log, synchronised to disk) before anybody hears that it is saved.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import secrets
 import sqlite3
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -154,6 +155,8 @@ class Store:
         ------
         ConflictError
             If the document has moved on from `before`.
+        FileError
+            If it cannot be written: a full disk, say. The document then stays as it was.
         """
         old = {id(curve): row for curve, row in zip(before.sketch.curves, before.rows, strict=True)}
         with self._transaction():
@@ -166,10 +169,12 @@ class Store:
 
     def has(self, document: str, key: str) -> bool:
         """Tell whether one of the last revisions was made by the message of this key."""
-        rows = self._db.execute(
-            "SELECT action FROM revisions WHERE document = ? ORDER BY number DESC LIMIT ?", (document, REMEMBERED)
+        found = self._db.execute(
+            "SELECT 1 FROM revisions WHERE document = ?1 AND number > "
+            "(SELECT MAX(number) FROM revisions WHERE document = ?1) - ?2 AND json_extract(action, '$.key') = ?3",
+            (document, REMEMBERED, key),
         )
-        return any(json.loads(action).get("key") == key for (action,) in rows)
+        return found.fetchone() is not None
 
     def undo(self, document: str, before: State) -> State:
         """Go back to the revision that this one was made from."""
@@ -189,8 +194,19 @@ class Store:
 
     # ---- inside -------------------------------------------------------------------------------------------------
 
-    def _transaction(self) -> _Transaction:
-        return _Transaction(self._db)
+    @contextlib.contextmanager
+    def _transaction(self) -> Iterator[None]:
+        """All of it, or nothing: the write lock is taken at once."""
+        try:
+            self._db.execute("BEGIN IMMEDIATE")
+            yield
+            self._db.execute("COMMIT")
+        except BaseException as exc:
+            if self._db.in_transaction:  # a commit that fails may leave it open
+                self._db.execute("ROLLBACK")
+            if isinstance(exc, sqlite3.Error):
+                raise FileError(f"the change could not be saved: {exc}") from exc
+            raise
 
     def _update(self, document: str, change: str, value: Any) -> None:
         done = self._db.execute(f"UPDATE documents SET {change} WHERE id = ?", (value, document))
@@ -272,19 +288,6 @@ class Store:
         ).fetchone()
         space = SplineSpace(degree, np.frombuffer(knots), periodic=bool(periodic))
         return Spline(space, np.frombuffer(points).reshape(-1, 2))
-
-
-class _Transaction:
-    """All of it, or nothing: the write lock is taken at once."""
-
-    def __init__(self, db: sqlite3.Connection) -> None:
-        self._db = db
-
-    def __enter__(self) -> None:
-        self._db.execute("BEGIN IMMEDIATE")
-
-    def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
-        self._db.execute("COMMIT" if kind is None else "ROLLBACK")
 
 
 def _opened(path: Path) -> sqlite3.Connection:

@@ -5,7 +5,8 @@ import { Documents } from "./documents.js";
 import { at, Drawing } from "./drawing.js";
 import { Hand } from "./hand.js";
 import { KEYS, listen } from "./keys.js";
-import { ink, knotline, paint } from "./paint.js";
+import { KnotLine } from "./knotline.js";
+import { ink, paint } from "./paint.js";
 import { Panel } from "./panel.js";
 import { Wire } from "./wire.js";
 
@@ -18,7 +19,6 @@ export class App {
     this.canvas = /** @type {HTMLCanvasElement} */ ($("curves"));
     this.ink = /** @type {HTMLCanvasElement} */ ($("ink"));
     this.marks = /** @type {SVGSVGElement} */ ($("marks"));
-    this.knotline = /** @type {SVGSVGElement} */ (document.querySelector("#knotline svg"));
     this.camera = new Camera();
     this.drawing = new Drawing();
     this.tool = "draw";
@@ -33,15 +33,21 @@ export class App {
     this.boehm = null;
     /** @type {{path: number[][], pressure: number[] | null} | null} */
     this.lastStroke = null;
+    /** milliseconds from the end of a stroke in the hand to the first frame that shows what it did */
     this.times = /** @type {number[]} */ ([]);
     /** whether a file was brought, and its curves are to be seen when they come */
     this.expected = false;
     /** @type {Promise<Record<string, any>>} the last change that was asked for */
     this.last = Promise.resolve({});
+    /** @type {Promise<Record<string, any>> | null} the change that is drawn and not on disk yet */
+    this.saving = null;
+    /** @type {[number, number] | null} how far the chosen vertices are in the hand from where they were */
+    this.away = null;
     this.token = new URLSearchParams(location.search).get("token") ?? "";
     this.hand = new Hand(this);
     this.documents = new Documents(this);
     this.panel = new Panel(this);
+    this.knotline = new KnotLine(this);
     /** @type {Wire} */
     this.wire = new Wire(this.token, (news) => this.heard(news), (state) => this.lineIs(state));
     listen(this);
@@ -69,7 +75,6 @@ export class App {
       dd.textContent = what;
       list?.append(dt, dd);
     }
-    this.knotKnobs();
   }
 
   // ---- what the server says ----------------------------------------------------------------------------------------
@@ -83,9 +88,21 @@ export class App {
     if (news.revision !== undefined) this.take(news);
   }
 
-  /** @param {Record<string, any>} news */
+  /**
+   * The drawing is this now, and on disk.
+   * @param {Record<string, any>} news
+   */
   take(news) {
-    const fresh = this.drawing.revision < 0;
+    this.see(news);
+    this.saved(news);
+  }
+
+  /**
+   * Draw what the drawing is, or will be.
+   * @param {Record<string, any>} news
+   */
+  see(news) {
+    const fresh = this.drawing.revision < 0, brought = this.expected && news.case === "imported";
     this.drawing.take(news);
     if (news.curve >= 0 && news.case !== "ignored") this.selected = news.curve;
     this.selected = Math.min(this.selected, this.drawing.curves.length - 1);
@@ -94,14 +111,29 @@ export class App {
     for (const vertex of this.vertices) if (vertex >= count) this.vertices.delete(vertex);
     this.preview = null;
     this.lens = {};
-    if (fresh || (this.expected && news.case === "imported")) {
-      this.camera.show(this.drawing.box(), this.covered());
-      this.expected = false;
-    }
+    this.mark(!!news.picture);
+    document.body.classList.toggle("empty", !this.drawing.curves.length);
+    if (fresh || brought) this.camera.show(this.drawing.box(), this.covered());
+    if (brought) this.expected = false;
+    this.paint();
+    this.inked();
+  }
+
+  /**
+   * What is drawn is on disk: it is said, and more is asked about it.
+   * @param {Record<string, any>} news
+   */
+  saved(news) {
+    this.drawing.revision = news.revision;
+    this.mark(false);
     if (news.reason) this.say(news.case, news.reason);
-    this.show();
     this.look();
     this.panel.fill();
+  }
+
+  /** @param {boolean} unsaved */
+  mark(unsaved) {
+    $("unsaved").classList.toggle("shown", unsaved);
   }
 
   /** @param {Record<string, any>} message @returns {Promise<Record<string, any>>} */
@@ -114,15 +146,37 @@ export class App {
   /** @param {Record<string, any>} message @returns {Promise<Record<string, any>>} */
   async perform(message) {
     const start = performance.now();
-    const answer = await this.wire.ask(message);
+    if ("based on" in message && this.saving) {
+      // it names vertices of a picture that is not saved yet
+      const before = await this.saving;
+      if (before.error) return before;
+      message["based on"] = before.revision;
+    }
+    let seen = false;
+    const show = (/** @type {Record<string, any>} */ picture) => {
+      seen = true;
+      this.saving = asked;
+      this.see(picture);
+      this.clock(start);
+    };
+    const asked = this.wire.ask(message, show);
+    const answer = await asked;
+    if (this.saving === asked) this.saving = null;
     if (answer.error) {
+      this.drawing.ghost = null;
       this.say("Not done", answer.error);
       if (/changed elsewhere/.test(answer.error)) this.documents.open(this.documents.current);
-    } else if (answer.revision !== undefined) {
+    } else if (seen) this.saved(answer);
+    else if (answer.revision !== undefined) {
       this.take(answer);
-      requestAnimationFrame(() => this.times.push(performance.now() - start));
+      this.clock(start);
     }
     return answer;
+  }
+
+  /** @param {number} start */
+  clock(start) {
+    requestAnimationFrame(() => this.times.push(performance.now() - start));
   }
 
   /** @param {"open" | "lost"} state */
@@ -138,31 +192,39 @@ export class App {
     return /** @type {HTMLInputElement} */ (document.querySelector(`[data-show=${what}]`)).checked;
   }
 
+  /** Draw in the next frame. */
   show() {
+    this.stale = true;
     if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      const empty = !this.drawing.curves.length;
-      document.body.classList.toggle("empty", empty);
-      $("undo").disabled = !this.drawing.undo;
-      $("redo").disabled = !this.drawing.redo;
-      $("zoom").textContent = `${Math.round(this.camera.scale * 100)} %`;
-      paint(this);
-      knotline(this);
-      ink(this);
+      if (this.stale) this.paint();
     });
   }
 
-  inked() {
-    ink(this);
+  /** Draw at once: the next frame shows it. */
+  paint() {
+    this.stale = false;
+    const zoom = `${Math.round(this.camera.scale * 100)} %`;
+    $("undo").disabled = !this.drawing.undo;
+    $("redo").disabled = !this.drawing.redo;
+    if ($("zoom").textContent !== zoom) $("zoom").textContent = zoom;
+    paint(this);
+    this.knotline.paint();
+  }
+
+  /** @param {boolean} [anew] */
+  inked(anew) {
+    ink(this, anew);
   }
 
   resized() {
     const { clientWidth, clientHeight } = this.sheet;
     this.camera.width = clientWidth;
     this.camera.height = clientHeight;
-    this.show();
+    this.paint();
+    this.inked();
   }
 
   /** @param {number} dx @param {number} dy */
@@ -328,9 +390,13 @@ export class App {
     this.put([end[0] + (step * (end[0] - before[0])) / length, end[1] + (step * (end[1] - before[1])) / length]);
   }
 
-  grasped() {
-    this.held = this.drawing.curves[this.selected].points.slice();
-    this.chosen();
+  /**
+   * The control points of a curve as they are drawn: those in the hand where the hand is.
+   * @param {number} index
+   */
+  pointsOf(index) {
+    const { points } = this.drawing.curves[index], { away } = this;
+    return away && index === this.selected ? points.map((p, i) => (this.vertices.has(i) ? [p[0] + away[0], p[1] + away[1]] : p)) : points;
   }
 
   /**
@@ -338,27 +404,19 @@ export class App {
    * @param {[number, number]} by
    */
   dragged(by) {
-    const curve = this.drawing.curves[this.selected];
-    if (!this.held || !curve) return;
-    curve.points = this.held.map((p, i) => (this.vertices.has(i) ? [p[0] + by[0], p[1] + by[1]] : p));
+    this.away = by;
     this.show();
   }
 
   dropped() {
-    const curve = this.drawing.curves[this.selected];
-    if (this.held && curve) curve.points = this.held;
-    this.held = undefined;
+    this.away = null;
     this.show();
   }
 
   /** @param {[number, number]} by */
   drop(by) {
-    const shown = this.drawing.curves[this.selected].points;
-    const held = this.held ?? shown;
-    this.drawing.curves[this.selected].points = held;
-    this.held = undefined;
+    this.away = null; // what is drawn stays until the answer
     this.move(by);
-    this.drawing.curves[this.selected].points = held;
   }
 
   /** @param {[number, number]} by */
@@ -493,46 +551,6 @@ export class App {
     this.asking = false;
     if (answer && this.tool === "lens") this.lens.triangle = answer;
     this.show();
-  }
-
-  // ---- the knot line --------------------------------------------------------------------------------------------------
-
-  knotKnobs() {
-    const svg = this.knotline;
-    const u = (/** @type {PointerEvent} */ event) => {
-      const box = svg.getBoundingClientRect(), { knots } = this.drawing.curves[this.selected];
-      const share = (event.clientX - box.left - 24) / (box.width - 48);
-      return knots[0] + share * (knots[knots.length - 1] - knots[0]);
-    };
-    svg.addEventListener("pointerdown", (event) => {
-      const mark = /** @type {SVGElement} */ (event.target).closest(".inner");
-      if (!mark) return;
-      svg.setPointerCapture(event.pointerId);
-      this.knob = Number(/** @type {SVGElement} */ (mark).dataset.knot);
-    });
-    svg.addEventListener("pointermove", (event) => {
-      if (this.knob === undefined) return;
-      const mark = svg.querySelector(`[data-knot="${this.knob}"]`);
-      const box = svg.getBoundingClientRect();
-      mark?.setAttribute("cx", String(event.clientX - box.left));
-    });
-    svg.addEventListener("pointerup", (event) => {
-      if (this.knob === undefined) return;
-      this.do({ do: "move knot", curve: this.selected, knot: this.knob, to: u(event), "based on": this.drawing.revision });
-      this.knob = undefined;
-    });
-    svg.addEventListener("keydown", (event) => {
-      const mark = /** @type {SVGElement} */ (event.target).closest(".inner");
-      if (!mark) return;
-      const i = Number(/** @type {SVGElement} */ (mark).dataset.knot), { knots, domain } = this.drawing.curves[this.selected];
-      const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (step) {
-        event.preventDefault();
-        this.do({ do: "move knot", curve: this.selected, knot: i, to: knots[i] + (step * (domain[1] - domain[0])) / 100, "based on": this.drawing.revision }).then(() =>
-          requestAnimationFrame(() => /** @type {SVGElement | null} */ (svg.querySelector(`[data-knot="${i}"]`))?.focus()));
-      }
-      if (event.key === "Delete") this.do({ do: "remove knot", curve: this.selected, u: knots[i], tolerance: this.panel.tolerance() });
-    });
   }
 
   // ---- the rest -----------------------------------------------------------------------------------------------------

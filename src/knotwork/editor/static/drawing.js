@@ -29,7 +29,7 @@ export class Drawing {
   take(news) {
     const changed = news.curves.length === 1 ? news.curves[0].at : -1;
     const before = this.curves[changed];
-    this.ghost = before && news.revision !== this.revision ? { index: changed, pieces: before.pieces.slice() } : null;
+    if (news.curves.length) this.ghost = before ? { index: changed, pieces: before.pieces } : null;
     for (const change of news.curves) {
       const old = change.whole ? null : this.curves[change.at];
       const curve = /** @type {any} */ (old ? { ...old } : {});

@@ -161,7 +161,7 @@ export class Hand {
         this.pressure?.push(each.pressure);
       }
     }
-    this.app.inked();
+    this.app.inked(false);
   }
 
   /**
@@ -229,7 +229,7 @@ export class Hand {
     }
     if (!app.vertices.has(vertex)) app.vertices = new Set([vertex]);
     this.doing = "drag";
-    app.grasped();
+    app.chosen();
   }
 
   /** @param {number} x @param {number} y @param {boolean} snap @returns {[number, number]} */

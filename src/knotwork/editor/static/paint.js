@@ -6,17 +6,29 @@ import { at } from "./drawing.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 /** vertices in sight up to which handles are drawn one by one */
-const HANDLES = 1500;
+export const HANDLES = 1500;
 /** pixels below which the steps of a polygon or a curve are not told apart */
 const FINE = 0.7;
 
-/** @param {string} name */
-export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+/** @type {Map<string, string>} */
+const colours = new Map();
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => colours.clear());
 
-/** @param {HTMLCanvasElement} canvas @returns {CanvasRenderingContext2D} */
-export function fitted(canvas) {
+/** @param {string} name @returns {string} */
+export function colour(name) {
+  const known = colours.get(name);
+  if (known) return known;
+  const read = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  colours.set(name, read);
+  return read;
+}
+
+/**
+ * A clean canvas of the size of the sheet. That is known: to ask the page for it here would have it laid out again.
+ * @param {HTMLCanvasElement} canvas @param {App["camera"]} camera @returns {CanvasRenderingContext2D}
+ */
+function fitted(canvas, { width: w, height: h }) {
   const ratio = devicePixelRatio || 1;
-  const { clientWidth: w, clientHeight: h } = canvas;
   if (canvas.width !== Math.round(w * ratio) || canvas.height !== Math.round(h * ratio)) {
     canvas.width = Math.round(w * ratio);
     canvas.height = Math.round(h * ratio);
@@ -30,7 +42,7 @@ export function fitted(canvas) {
 /** @param {App} app */
 export function paint(app) {
   const { camera, drawing } = app;
-  const pen = fitted(app.canvas);
+  const pen = fitted(app.canvas, camera);
   pen.lineJoin = pen.lineCap = "round";
   grid(pen, camera);
   if (app.shows("ghost") && drawing.ghost) trace(pen, camera, drawing.ghost.pieces, colour("ghost"), 2);
@@ -128,32 +140,36 @@ function path(camera, points) {
   return d;
 }
 
-/** @param {App} app */
+/**
+ * The marks, a few paths however many they are: an element for each would take a frame of its own.
+ * @param {App} app
+ */
 function marks(app) {
   const { camera, drawing } = app;
   const made = document.createDocumentFragment();
   drawing.curves.forEach((curve, i) => {
     const chosen = i === app.selected;
     if (app.shows("polygon")) {
-      const round = curve.closed ? [...curve.points, curve.points[0]] : curve.points;
+      const points = app.pointsOf(i), round = curve.closed ? [...points, points[0]] : points;
       made.append(element("path", { d: path(camera, round), class: chosen ? "polygon chosen" : "polygon" }));
     }
     if (!chosen) return;
-    if (app.shows("knots"))
-      for (const k of inSight(camera, curve.pieces)) if (k || curve.closed) dot(made, camera, curve.pieces[k], 2.6, "knot");
+    if (app.shows("knots")) {
+      const inner = curve.closed ? curve.pieces : curve.pieces.slice(1);
+      made.append(dots(camera, inSight(camera, inner).map((k) => inner[k]), 2.6, "knot"));
+    }
     if (app.shows("comb") && app.lens.comb) comb(made, app);
     if (app.shows("nodes") && app.lens.nodes)
-      for (const k of inSight(camera, app.lens.nodes)) dot(made, camera, app.lens.nodes[k], 2.4, "node");
-    for (const k of inSight(camera, curve.points)) {
-      const p = curve.points[k];
-      dot(made, camera, p, app.vertices.has(k) ? 6 : 4.5, app.vertices.has(k) ? "vertex chosen" : "vertex");
-      const letters = app.shows("blossoms") && app.lens.blossoms?.[k];
-      if (letters) made.append(label(camera, p, letters.join(" ")));
-    }
+      made.append(dots(camera, inSight(camera, app.lens.nodes).map((k) => app.lens.nodes[k]), 2.4, "node"));
+    const points = app.pointsOf(i), seen = inSight(camera, points);
+    made.append(dots(camera, seen.filter((k) => !app.vertices.has(k)).map((k) => points[k]), 4.5, "vertex"));
+    made.append(dots(camera, seen.filter((k) => app.vertices.has(k)).map((k) => points[k]), 6, "vertex chosen"));
+    if (app.shows("blossoms") && app.lens.blossoms)
+      for (const k of seen) if (app.lens.blossoms[k]) made.append(label(camera, points[k], app.lens.blossoms[k].join(" ")));
   });
   if (drawing.pending) {
     made.append(element("path", { d: path(camera, drawing.pending.chain), class: "pending" }));
-    for (const p of drawing.pending.chain) dot(made, camera, p, 3, "pending");
+    made.append(dots(camera, drawing.pending.chain, 3, "pending"));
   }
   triangle(made, app);
   if (app.boehm) boehm(made, app);
@@ -174,10 +190,14 @@ function inSight(camera, points) {
   return seen.length <= HANDLES ? seen : [];
 }
 
-/** @param {DocumentFragment} into @param {App["camera"]} camera @param {number[]} p @param {number} r @param {string} kind */
-function dot(into, camera, p, r, kind) {
-  const [cx, cy] = camera.toScreen(p);
-  into.append(element("circle", { cx: cx.toFixed(1), cy: cy.toFixed(1), r, class: kind }));
+/** @param {App["camera"]} camera @param {number[][]} points @param {number} r @param {string} kind */
+function dots(camera, points, r, kind) {
+  const turn = `a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+  const d = points.map((p) => {
+    const [x, y] = camera.toScreen(p);
+    return `M${(x - r).toFixed(1)} ${y.toFixed(1)}${turn}`;
+  });
+  return element("path", { d: d.join(""), class: `dots ${kind}` });
 }
 
 /** @param {App["camera"]} camera @param {number[]} p @param {string} text */
@@ -195,11 +215,10 @@ function triangle(into, app) {
   const told = app.lens.triangle;
   if (!told) return;
   told.levels.forEach((/** @type {number[][]} */ level, /** @type {number} */ r) => {
-    into.append(element("path", { d: path(app.camera, level), class: `level level-${Math.min(r, 4)}` }));
-    level.forEach((p, q) => {
-      dot(into, app.camera, p, r === told.levels.length - 1 ? 5.5 : 3.2, `level level-${Math.min(r, 4)}`);
-      into.append(label(app.camera, p, told.arguments[r][q].join(" ")));
-    });
+    const kind = `level level-${Math.min(r, 4)}`;
+    into.append(element("path", { d: path(app.camera, level), class: kind }));
+    into.append(dots(app.camera, level, r === told.levels.length - 1 ? 5.5 : 3.2, kind));
+    level.forEach((p, q) => into.append(label(app.camera, p, told.arguments[r][q].join(" "))));
   });
 }
 
@@ -212,7 +231,7 @@ function boehm(into, app) {
   const { steps, shown } = /** @type {any} */ (app.boehm);
   steps.slice(0, shown).forEach((/** @type {any} */ step) => {
     into.append(element("path", { d: path(app.camera, [step.from, step.to]), class: "side" }));
-    dot(into, app.camera, step.point, 5, "boehm");
+    into.append(dots(app.camera, [step.point], 5, "boehm"));
     into.append(label(app.camera, step.point, step.share.toFixed(3).replace(/0+$/, "").replace(/\.$/, "")));
   });
 }
@@ -230,61 +249,27 @@ function comb(into, app) {
   into.append(element("path", { d: teeth, class: "teeth" }), element("path", { d: path(app.camera, ends), class: "comb" }));
 }
 
+/** how much of which stroke is on its canvas */
+let inked = { path: /** @type {number[][]} */ ([]), to: 0 };
+
 /**
- * The stroke that is being drawn, wider where the pen presses.
- * @param {App} app
+ * The stroke that is being drawn, wider where the pen presses: what came since the last time, or all of it anew.
+ * @param {App} app @param {boolean} [anew]
  */
-export function ink(app) {
-  const pen = fitted(app.ink);
+export function ink(app, anew = true) {
   const { path: drawn, pressure } = app.hand;
-  if (drawn.length < 1) return;
+  if (anew || inked.path !== drawn) inked = { path: drawn, to: 0 };
+  const pen = inked.to ? /** @type {CanvasRenderingContext2D} */ (app.ink.getContext("2d")) : fitted(app.ink, app.camera);
   pen.strokeStyle = colour("ink");
   pen.lineCap = pen.lineJoin = "round";
-  for (let i = 1; i < drawn.length; i++) {
+  for (let i = inked.to + 1; i < drawn.length; i++) {
     pen.lineWidth = pressure ? 1 + 5 * pressure[i] : 2.5;
     pen.beginPath();
     pen.moveTo(drawn[i - 1][0], drawn[i - 1][1]);
     pen.lineTo(drawn[i][0], drawn[i][1]);
     pen.stroke();
   }
-}
-
-/**
- * The knots below the sheet, and the basis functions over them.
- * @param {App} app
- */
-export function knotline(app) {
-  const svg = app.knotline;
-  const curve = app.drawing.curves[app.selected];
-  svg.parentElement?.classList.toggle("shown", !!curve && app.shows("knots"));
-  svg.parentElement?.classList.toggle("tall", app.shows("functions"));
-  if (!curve) return svg.replaceChildren();
-  const width = svg.clientWidth || 600, height = svg.clientHeight || 60, base = height - 22;
-  const [a, b] = [curve.knots[0], curve.knots[curve.knots.length - 1]];
-  const x = (/** @type {number} */ u) => 24 + ((u - a) / (b - a || 1)) * (width - 48);
-  const made = document.createDocumentFragment();
-  if (app.shows("functions") && app.lens.functions) {
-    const { u, functions } = app.lens.functions;
-    functions.forEach((/** @type {any} */ f, /** @type {number} */ i) => {
-      const d = f.values.map((/** @type {number} */ y, /** @type {number} */ k) => `${k ? "L" : "M"}${x(u[f.at + k]).toFixed(1)} ${(base - y * (base - 8)).toFixed(1)}`).join("");
-      made.append(element("path", { d, class: app.vertices.has(i) ? "function chosen" : "function" }));
-    });
-  }
-  made.append(element("path", { d: `M${x(a)} ${base}H${x(b)}`, class: "axis" }));
-  if (app.shows("nodes")) for (const u of curve.nodes) if (u <= b) made.append(element("circle", { cx: x(u), cy: base, r: 3, class: "node" }));
-  /** @type {Map<number, number>} */
-  const seen = new Map();
-  if (curve.knots.length <= HANDLES)
-    curve.knots.forEach((u, i) => {
-      const copies = seen.get(u) ?? 0;
-      seen.set(u, copies + 1);
-      const inner = curve.closed ? i > 0 && i < curve.knots.length - 1 : i > curve.degree && i < curve.knots.length - curve.degree - 1;
-      const mark = element("circle", { cx: x(u).toFixed(1), cy: base - copies * 9, r: 4.5, class: inner ? "knot inner" : "knot", "data-knot": i, tabindex: inner ? 0 : -1, role: "slider", "aria-label": `knot ${i}`, "aria-valuenow": u, "aria-valuetext": String(+u.toPrecision(6)) });
-      mark.append(element("title", {}, String(+u.toPrecision(6))));
-      made.append(mark);
-    });
-  made.append(element("text", { x: x(a), y: height - 4, class: "end" }, String(+a.toPrecision(4))), element("text", { x: x(b), y: height - 4, class: "end last" }, String(+b.toPrecision(4))));
-  svg.replaceChildren(made);
+  inked.to = Math.max(0, drawn.length - 1);
 }
 
 export { at };

@@ -14,7 +14,7 @@ export class Wire {
     this.tell = tell;
     this.number = 0;
     this.wait = 250;
-    /** @type {Map<number, {message: Message, resolve: (answer: Message) => void}>} */
+    /** @type {Map<number, {message: Message, resolve: (answer: Message) => void, see: (picture: Message) => void}>} */
     this.open = new Map();
     /** @type {string | null} */
     this.document = null;
@@ -40,6 +40,7 @@ export class Wire {
       if (this.document) this.transmit({ id: 0, open: this.document });
       for (const [id, { message: again }] of this.open) this.transmit({ id, ...again });
     }
+    if (message.picture) return this.open.get(message.picture)?.see(message);
     const asked = this.open.get(message.id);
     if (asked) {
       this.open.delete(message.id);
@@ -55,13 +56,14 @@ export class Wire {
   /**
    * Say something, and wait for the answer.
    * @param {Message} message
+   * @param {(picture: Message) => void} [see]  takes what the drawing will be, before it is on disk
    * @returns {Promise<Message>}
    */
-  ask(message) {
+  ask(message, see = () => {}) {
     const id = ++this.number;
     const said = message.do ? { ...message, key: `${PAGE}-${id}` } : message;
     return new Promise((resolve) => {
-      this.open.set(id, { message: said, resolve });
+      this.open.set(id, { message: said, resolve, see });
       this.transmit({ id, ...said });
     });
   }
