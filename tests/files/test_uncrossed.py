@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 import knotwork as kw
 from crossing_pairs import crossing_pairs
 from knotwork.cli import main
-from knotwork.errors import ParameterError
 from knotwork.files.lighter import lighter
 from knotwork.files.lines import corners
 
@@ -136,16 +135,6 @@ def test_the_command_counts(tmp_path):
     assert told[1] == {"own": [0, 0], "others": [0, 0]}
     done = CliRunner().invoke(main, ["reduce", str(tmp_path / "a.geojson"), "-t", "0.04", "--no-crossings"])
     assert "crossings of a line with itself 0 → 0, with others 0 → 0" in done.output
-
-
-def test_only_for_lines(tmp_path):
-    path = tmp_path / "a.svg"
-    path.write_text('<svg><path d="M0 0C1 2 3 2 4 0"/></svg>')
-    with pytest.raises(ParameterError, match="expected a map or a track"):
-        lighter(kw.open(path), 0.1, no_crossings=True)
-    done = CliRunner().invoke(main, ["reduce", str(path), "-t", "0.1", "--no-crossings"])
-    assert done.exit_code == 2
-    assert "--no-crossings" in done.output
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.json"])

@@ -12,7 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from knotwork.errors import ParameterError, PointError
+from knotwork.files.lighter import polylines
+from knotwork.files.uncrossed import uncrossed
 from knotwork.geometry import flatten
+from knotwork.geometry.boxes import extent
 from knotwork.geometry.lengths import linear
 from knotwork.removal import fit, reduce
 from knotwork.removal.shapes.reducing import reduce_shapes
@@ -39,6 +42,7 @@ def reduce_curves(
     form: str | None = None,
     effort: str = "normal",
     keep: Any = None,
+    no_crossings: bool = False,
 ) -> list[Outcome]:
     """Return splines with few knots within a tolerance of each of those given.
 
@@ -51,6 +55,8 @@ def reduce_curves(
         As in `reduce`.
     form : {"spline", "bezier", "polyline"}, optional
         As in `reduce`. By default polylines stay polylines, and other shapes become cubic Bézier pieces.
+    no_crossings : bool
+        Whether a polyline, which must stay one, crosses itself only where it did. What is beside it does not matter.
 
     Returns
     -------
@@ -68,11 +74,23 @@ def reduce_curves(
     """
 
     def one(spline: Spline) -> Outcome:
+        if no_crossings:
+            if not _straight(spline) or (distance, form or "polyline", keep) != ("geometric", "polyline", None):
+                raise ParameterError("no_crossings given; expected polylines that stay polylines, and nothing to keep")
+            allowed = tolerance.fraction * float(extent([spline])) if isinstance(tolerance, Relative) else tolerance
+            if np.ndim(allowed):
+                raise ParameterError(f"no_crossings and the tolerance {tolerance} given; expected one number")
+            return Outcome(*uncrossed([spline], allowed, polylines(effort))[0])
         made = form or ("spline" if distance == "parametric" else "polyline" if _straight(spline) else "bezier")
         found = reduce(spline, tolerance, distance=distance, form=made, effort=effort, keep=keep)
         return Outcome(found.spline, float(np.max(found.bound)))
 
-    together = distance == "geometric" and not isinstance(tolerance, Relative) and form in (None, "bezier")
+    together = (
+        not no_crossings
+        and distance == "geometric"
+        and not isinstance(tolerance, Relative)
+        and form in (None, "bezier")
+    )
     some = [i for i, s in enumerate(splines) if together and (form or not _straight(s))]
     found: dict[int, Outcome] = {}
     if some:

@@ -21,7 +21,7 @@ from knotwork.files.storage import replace
 
 #: what every task can be asked for
 OPTIONS = {
-    "reduce": ("tolerance", "distance", "form", "effort", "keep"),
+    "reduce": ("tolerance", "distance", "form", "effort", "keep", "no_crossings"),
     "fit": ("tolerance", "degree", "distance", "form", "effort"),
     "convert": (),
     "flatten": ("tolerance",),
@@ -110,7 +110,7 @@ def batch(
         Called with a `Pace` after each part.
     **options
         What the task takes: ``tolerance`` of all but "convert"; of "reduce" and "fit" also ``distance``, ``form``,
-        ``effort``; of "reduce" ``keep``; of "fit" ``degree``.
+        ``effort``; of "reduce" ``keep`` and ``no_crossings``; of "fit" ``degree``.
 
     Returns
     -------

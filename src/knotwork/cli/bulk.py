@@ -40,6 +40,12 @@ SELDOM = 30.0
 @click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="At equal parameters, or of shapes.")
 @click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), help="What shapes become.")
 @click.option("--effort", type=click.Choice(["fast", "normal", "best"]), help="How long to search.")
+@click.option(
+    "--no-crossings",
+    is_flag=True,
+    default=None,
+    help="Drawings and maps as in `knotwork reduce`; each line of a table or a row crosses itself only where it did.",
+)
 @as_json
 def batch(
     task: str,

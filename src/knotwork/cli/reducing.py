@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 #: formats that are written in place with few segments, and what these are
 IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 #: what is said where crossings are not looked at
-NOT_LINES = "--no-crossings is for maps, tracks and tables whose lines stay lines"
+NOT_LINES = "--no-crossings is for drawings in place, and for maps, tracks and tables whose lines stay lines"
 #: and where there are no degrees
 NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON and GPX in place"
 
@@ -52,7 +52,7 @@ NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON 
 @click.option(
     "--no-crossings",
     is_flag=True,
-    help="Lines of a map, a track or a table cross themselves and each other only where they did.",
+    help="Lines of a map, a track or a table, and the subpaths of a path, cross only where they did.",
 )
 @click.option("--add-extrema", is_flag=True, help="Curves of glyphs get a point where they turn back in x or y.")
 @click.option("--together", is_flag=True, help="Files are masters of one family of fonts: points stay the same in all.")
@@ -113,7 +113,7 @@ def reduce(
             raise click.UsageError("--add-extrema is for fonts in place")
         if drawn and set(features) - ({"corners", "lines"} if kind.module == "svg" else set()):
             raise click.UsageError("of drawings, --keep takes corners, which stay anyway, and lines; of maps nothing")
-        if drawn and not (no_crossings and IN_PLACE[kind.module] != "polyline"):
+        if drawn:
             how = {"effort": effort, "precision": precision, "lines": "lines" in features}
             how |= {"shared": shared_borders, "no_crossings": no_crossings, "ground": tolerance.ground}
             return _lighter(job, file, output, tolerance, even_if_longer, **how)
@@ -150,10 +150,10 @@ def reduce(
     job.each(work)
 
 
-def crossings_told(before: Crossings, after: Crossings) -> str:
+def crossings_told(before: Crossings, after: Crossings, whose: str = "") -> str:
     """Return a text that tells how often lines cross before and after."""
     (own, others), (own_after, others_after) = before, after
-    return f"crossings of a line with itself {own:,} → {own_after:,}, with others {others:,} → {others_after:,}"
+    return f"crossings of a line with itself {own:,} → {own_after:,}, with others{whose} {others:,} → {others_after:,}"
 
 
 def crossings_counted(before: Crossings, after: Crossings) -> dict[str, list[int]]:
@@ -211,7 +211,7 @@ def _lighter(
     job.echo(f"{file}: {report.counted(len(document.splines), 'curve')}, tolerance {allowed:.6g}{measured}")
     job.echo(f"{before:,} → {after:,} segments, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
     if found.crossings:
-        job.echo(crossings_told(*found.crossings))
+        job.echo(crossings_told(*found.crossings, " of its path" if document.format.module == "svg" else ""))
     job.echo(
         f"no point is farther than {report.upward(bound):.6g}{metres} from where it was: proven, rounding included"
     )

@@ -2,35 +2,70 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.removal.shapes.bezier import reduce_bezier
+from knotwork.files.halving import STAYS, Standing, stretches
+from knotwork.removal.shapes.bezier import Pieces, reduce_bezier
 
 
 class Curve(NamedTuple):
-    """A curve as cubic Bézier pieces, shape (m, 4, 2); those from a to b − 1 stay, for each pair a, b."""
+    """A curve as cubic Bézier pieces, shape (m, 4, 2)."""
 
     nets: Array
     closed: bool
-    stay: Sequence[tuple[int, int]] = ()
-
-
-class Bent(NamedTuple):
-    """A curve in fewer pieces, and how far it is from the one given at most."""
-
-    nets: Array
-    bound: float
+    #: how often the tolerance is halved for each piece; those with `STAYS` stay
+    halved: Array
 
 
 class _Run(NamedTuple):
+    """Given pieces, so many from the first on, and those found for them: number `k` of what is found, or themselves."""
+
+    first: int
     nets: Array
-    closed: bool
-    #: whether fewer pieces are looked for
-    free: bool
+    found: Pieces | None = None
+    k: int = 0
+
+    @property
+    def new(self) -> Array:
+        """The pieces that stand for them."""
+        return self.nets if self.found is None else self.found.nets[self.found.at[self.k] : self.found.at[self.k + 1]]
+
+    @property
+    def bound(self) -> float:
+        """How far they are off at most."""
+        return 0.0 if self.found is None else float(self.found.bound[self.k])
+
+    @property
+    def standing(self) -> tuple[Array, Array]:
+        """The first given piece that each new one stands for, and how many."""
+        if self.found is None:
+            return self.first + np.arange(len(self.nets)), np.ones(len(self.nets), int)
+        u, s = (x[self.found.path[self.k] : self.found.path[self.k + 1]] for x in (self.found.u, self.found.s))
+        joints = np.arange(len(self.new) + 1.0)
+        ends = np.stack([np.interp(joints, u, s), np.interp(-joints, -u[::-1], s[::-1])])  # it may stand still there
+        first, last = np.floor(ends.min(axis=0)).astype(int), np.ceil(ends.max(axis=0)).astype(int)
+        many = np.clip(last[1:] - first[:-1], 1, len(self.nets))
+        return self.first + int(self.found.start[self.k]) + first[:-1], many
+
+
+class Bent(NamedTuple):
+    """A curve in fewer pieces."""
+
+    nets: Array
+    #: how far it is from the one given at most
+    bound: float
+    runs: list[_Run]
+
+    @property
+    def standing(self) -> Standing:
+        """What its pieces stand for."""
+        first, many = (np.concatenate(x) for x in zip(*(run.standing for run in self.runs), strict=True))
+        return Standing(first, many, sum(len(run.nets) for run in self.runs))
 
 
 def bent(
@@ -41,33 +76,34 @@ def bent(
     A closed one may begin elsewhere. For the rest see `reduce_bezier`.
     """
     runs = [_runs(curve) for curve in curves]
-    free = [run for each in runs for run in each if run.free]
-    if not free:
-        return [None] * len(curves)
-    at = np.cumsum([0, *(len(run.nets) for run in free)])
-    closed = [run.closed for run in free]
-    nets = np.concatenate([run.nets for run in free])
-    found = reduce_bezier(nets, at, tolerance, closed=closed, effort=effort, angle=angle, lines=lines)
-    parts = (Bent(found.nets[a:b], float(d)) for a, b, d in zip(found.at, found.at[1:], found.bound, strict=False))
-    result: list[Bent | None] = []
-    for each in runs:
-        new = [next(parts) if run.free else Bent(run.nets[:0], 0.0) for run in each]
-        fewer = any(len(part.nets) for part in new)
-        pieces = [part.nets if len(part.nets) else run.nets for part, run in zip(new, each, strict=True)]
-        result.append(Bent(np.concatenate(pieces), max(part.bound for part in new)) if fewer else None)
-    return result
+    free: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for c, each in enumerate(runs):
+        for k, run in enumerate(each):
+            halved = int(curves[c].halved[run.first])
+            if halved < STAYS and len(run.nets) > 1:
+                free[halved].append((c, k))
+    for halved, some in free.items():
+        nets = [runs[c][k].nets for c, k in some]
+        at, closed = np.cumsum([0, *map(len, nets)]), [curves[c].closed and len(runs[c]) == 1 for c, _ in some]
+        allowed = tolerance / 2**halved
+        found = reduce_bezier(np.concatenate(nets), at, allowed, closed=closed, effort=effort, angle=angle, lines=lines)
+        for i in np.flatnonzero(np.diff(found.at)).tolist():
+            c, k = some[i]
+            runs[c][k] = runs[c][k]._replace(found=found, k=i)
+    return [_bent(each) for each in runs]
+
+
+def _bent(runs: list[_Run]) -> Bent | None:
+    """Return the curve of runs that follow each other; None if they are what was given."""
+    if all(run.found is None for run in runs):
+        return None
+    return Bent(np.concatenate([run.new for run in runs]), max(run.bound for run in runs), runs)
 
 
 def _runs(curve: Curve) -> list[_Run]:
-    """Return the runs of pieces that stay and of those that do not; a closed curve begins with one that stays."""
-    nets, stay = curve.nets, list(curve.stay)
-    if not stay:
-        return [_Run(nets, curve.closed, len(nets) > 1)]
-    if curve.closed:
-        first = stay[0][0]
-        nets, stay = np.roll(nets, -first, axis=0), [(a - first, b - first) for a, b in stay]
-    runs, stop = [], 0
-    for a, b in [*stay, (len(nets), len(nets))]:
-        runs += [_Run(nets[stop:a], False, a - stop > 1), _Run(nets[a:b], False, False)]
-        stop = b
-    return [run for run in runs if len(run.nets)]
+    """Return the runs of pieces with one tolerance."""
+    nets = curve.nets
+    if not curve.halved.any():
+        return [_Run(0, nets)]
+    twice = np.concatenate([nets, nets])
+    return [_Run(a, twice[a:b]) for a, b in stretches(curve.halved, curve.closed)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +14,11 @@ from knotwork.files.bent import Curve, bent
 from knotwork.files.borders import Arcs
 from knotwork.files.document import Document
 from knotwork.files.ground import MOST, in_degrees, in_metres
+from knotwork.files.halving import STAYS
 from knotwork.files.lines import DIGITS, Lines, digits_for, number, paced
+from knotwork.files.svg.figures import Found, untangled
 from knotwork.files.svg.inplace import Drawing
-from knotwork.files.uncrossed import Crossings, Reduce, apart, count_crossings, uncrossed
+from knotwork.files.uncrossed import Crossings, Line, Reduce, apart, count_crossings, uncrossed
 from knotwork.geometry.bezier import joined, parted, raised
 from knotwork.removal import reduce as reduce_one
 from knotwork.removal.shapes.bezier import EFFORTS
@@ -76,7 +78,8 @@ def lighter(
     shared : bool
         Whether borders that polylines share stay shared.
     no_crossings : bool
-        Whether polylines cross themselves and each other, as they are written, only where they did: `uncrossed`.
+        Whether polylines cross themselves and each other, as they are written, only where they did: `uncrossed`. Of a
+        drawing, whether a path with its subpaths meets itself only where it did: `untangled`.
     even_if_longer : bool
         Whether lines are replaced where their text gets no shorter.
     ground : bool
@@ -86,7 +89,7 @@ def lighter(
     ------
     ParameterError
         If the tolerance is not positive and finite, a spline is no plane curve, or crossings are to be avoided in a
-        file that does not hold polylines alone, or metres are given for one that does not hold degrees.
+        file that is no drawing, map or track, or metres are given for one that does not hold degrees.
     """
     places, content = document.places, document.content
     free = [i for i, place in enumerate(places) if not place.fixed and place.scale > 0]
@@ -94,63 +97,100 @@ def lighter(
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
-    wanted = _Wanted(effort, shared, no_crossings, even_if_longer, ground)
-    if no_crossings and not isinstance(content, Lines):
-        raise ParameterError(f"no_crossings given for {document.path}; expected a map or a track: GeoJSON or GPX")
+    if no_crossings and not isinstance(content, Lines | Drawing):
+        raise ParameterError(f"no_crossings given for {document.path}; expected a drawing, a map or a track")
     if ground and not all(place.units == "degrees" for place in places):
         raise ParameterError(f"metres on the ground given for {document.path}; expected a map or a track in degrees")
+    wanted = _Wanted(effort, corners, lines, shared, no_crossings, even_if_longer, ground)
     scales = [MOST if ground else place.scale for place in places]
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
     accuracy = {i: grid or ROUNDED * tolerance / scales[i] for i in free}
-    arcs = content.arcs if isinstance(content, Drawing) else {}
-    changed: dict[int, Spline] = {}
-    moved: dict[int, float] = {}
-    for scale in sorted({scales[i] for i in free}):
-        alike = [i for i in free if scales[i] == scale]
-        allowed = (1 - min(accuracy[alike[0]] * scale / tolerance, 0.5)) * tolerance / scale
-        straight = [i for i in alike if places[i].straight]
-        for i, (line, bound) in zip(straight, _together(document, straight, allowed, accuracy, wanted), strict=True):
-            changed[i], moved[i] = line, bound * scale
-        curved = [i for i in alike if not places[i].straight]
-        given = [Curve(_cubics(document, i), places[i].closed, arcs.get(i, ())) for i in curved]
-        found = bent(given, allowed, effort=effort, angle=CORNER if corners else None, lines=lines)
-        for i, new in zip(curved, found, strict=True):
-            if new:
-                t, closed = (0.0, float(len(new.nets))), places[i].closed
-                changed[i] = joined(new.nets, breaks_by_length(new.nets, t, closed), closed)
-                moved[i] = new.bound * scale
-    if isinstance(content, Drawing) and not even_if_longer:
-        for i in content.longer(changed, accuracy):
-            del changed[i], moved[i]
-    after = document.with_splines(changed).rounding(accuracy).where_shorter()
+    own = [i for i in free if isinstance(content, Drawing) and document.splines[i] is content.splines[i]]
+    arcs = {i: content.arcs.get(i, ()) for i in own}
+
+    def alike(some: Collection[int]) -> Iterator[tuple[list[int], float]]:
+        """Yield curves that are drawn at one scale, and the tolerance for them."""
+        for scale in sorted({scales[i] for i in some}):
+            those = [i for i in some if scales[i] == scale]
+            yield those, (1 - min(accuracy[those[0]] * scale / tolerance, 0.5)) * tolerance / scale
+
+    halved = {i: np.zeros(len(document.splines[i].space.breaks) - 1, int) for i in free}
+    for i in own:
+        for a, b in arcs[i]:
+            halved[i][a:b] = STAYS
+
+    def search(some: Collection[int]) -> dict[int, Found]:
+        """Return what is found for curves, with the tolerance halved as often as is said."""
+        new: dict[int, Found] = {}
+        for those, allowed in alike(some):
+            straight = [i for i in those if places[i].straight]
+            new |= _lines(document, straight, allowed, halved, accuracy, wanted)
+            new |= _curves(document, [i for i in those if not places[i].straight], allowed, halved, wanted)
+        return new
+
     crossings = None
+    if isinstance(content, Drawing) and no_crossings:
+        if len(own) < len(free) or shared:
+            given = "shared" if shared else "a drawing with new splines"
+            raise ParameterError(f"no_crossings and {given} given; of a drawing expected one of both")
+        told = untangled(content, halved, search, accuracy, even_if_longer)
+        found, accuracy = told.new, told.accuracy
+        crossings = Crossings(*told.before), Crossings(*told.after)
+    else:
+        found = search(free)
+        if isinstance(content, Drawing) and not even_if_longer:
+            for i in content.longer({i: new.spline for i, new in found.items()}, accuracy):
+                del found[i]
+    after = document.with_splines({i: new.spline for i, new in found.items()}).rounding(accuracy).where_shorter()
     if isinstance(content, Lines):
         crossings = count_crossings(document.splines), count_crossings(after.splines)
-    inside = sum(b - a - 1 for i in free for a, b in arcs.get(i, ()))  # pieces of an arc are one segment
+    inside = sum(b - a - 1 for i in own for a, b in arcs[i])  # pieces of an arc are one segment
     segments = [sum(len(each.splines[i].space.breaks) - 1 for i in free) - inside for each in (document, after)]
-    worst = max(moved.values(), default=0.0)
+    worst = max((new.bound * scales[i] for i, new in found.items()), default=0.0)
     return Lighter(after, (segments[0], segments[1]), worst, crossings, MOST if ground else 1.0)
 
 
 class _Wanted(NamedTuple):
-    """What is asked of polylines: see `lighter`."""
+    """What is asked for: see `lighter`."""
 
     effort: str
+    corners: bool
+    lines: bool
     shared: bool
     no_crossings: bool
     even_if_longer: bool
     ground: bool
 
 
-def _together(
-    document: Document, alike: list[int], tolerance: float, accuracy: dict[int, float], wanted: _Wanted
-) -> list[tuple[Spline, float]]:
-    """Return polylines with few corners, as they are written, and how far each is from the one given."""
-    content, lines = document.content, [document.splines[i] for i in alike]
+def _curves(
+    document: Document, some: list[int], tolerance: float, halved: Mapping[int, Array], wanted: _Wanted
+) -> dict[int, Found]:
+    """Return curves of few pieces, for those that need not stay as they are."""
+    closed = [document.places[i].closed for i in some]
+    given = [Curve(_cubics(document, i), ring, halved[i]) for i, ring in zip(some, closed, strict=True)]
+    angle = CORNER if wanted.corners else None
+    found: dict[int, Found] = {}
+    new = bent(given, tolerance, effort=wanted.effort, angle=angle, lines=wanted.lines)
+    for i, ring, each in zip(some, closed, new, strict=True):
+        if each:
+            t = breaks_by_length(each.nets, (0.0, float(len(each.nets))), ring)
+            found[i] = Found(joined(each.nets, t, ring), each.bound, each)
+    return found
+
+
+def _lines(
+    document: Document, some: list[int], tolerance: float, halved: Mapping[int, Array], accuracy: Mapping[int, float],
+    wanted: _Wanted,
+) -> dict[int, Found]:  # fmt: skip
+    """Return polylines with few corners, as they are written."""
+    content, lines = document.content, [document.splines[i] for i in some]
     if not lines:
-        return []
-    digits = digits_for(accuracy[alike[0]]) if isinstance(content, Lines) else DIGITS
+        return {}
+    digits = digits_for(accuracy[some[0]]) if isinstance(content, Lines) else DIGITS
     reduce = polylines(wanted.effort, digits, wanted.ground)
+    if isinstance(content, Drawing) and wanted.no_crossings:
+        parts = {i: Line(document.splines[i], halved[i]).reduced(tolerance, reduce) for i in some}
+        return {i: Found(part.spline, part.bound, part) for i, part in parts.items()}
     arcs = Arcs(lines) if wanted.shared else None
     whole: set[int] = set()
 
@@ -160,12 +200,13 @@ def _together(
     while True:
         new = arcs.reduced(way, whole) if arcs else way(lines, whole)
         new = [(lines[k], 0.0) if k in whole else each for k, each in enumerate(new)]
+        found = {i: Found(*each) for i, each in zip(some, new, strict=True)}
         if wanted.even_if_longer or not isinstance(content, Lines):
-            return new
-        longer = content.longer({i: line for i, (line, _) in zip(alike, new, strict=True)}, accuracy)
-        more = {k for k, i in enumerate(alike) if i in longer} - whole
+            return found
+        longer = content.longer({i: each.spline for i, each in found.items()}, accuracy)
+        more = {k for k, i in enumerate(some) if i in longer} - whole
         if not more:
-            return new
+            return found
         whole |= more  # what is not written anew stays as it is, and so does what others share with it
 
 

@@ -11,11 +11,12 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.exact_crossings import decided
+from knotwork.geometry.figures import pairs_within
 from knotwork.geometry.gathering import Crossings, closed, gathered
 from knotwork.geometry.lines import Line, Plane, on_plane, segment
 from knotwork.geometry.meetings import Pairs, search
 from knotwork.geometry.neighbours import candidates
-from knotwork.geometry.proofs import APART, NEXT, SAME
+from knotwork.geometry.proofs import APART
 from knotwork.geometry.sides import Side, Whole, scale, whole
 from knotwork.spline import Spline
 
@@ -136,25 +137,6 @@ def _of_two(a: Side, b: Side, tolerance: float) -> Pairs:
 
 
 def _itself(curve: Whole, tolerance: float) -> Pairs:
-    """Return the pairs of pieces of one curve whose boxes meet; pieces that are points are left out."""
-    side = curve.side
-    P = side.points
-    size = (P.max(axis=1) - P.min(axis=1)).max(axis=1)
-    side = side.taken(size > tolerance + 4 * side.error)
-    ring = closed(curve, 0)
-    while ring and 0 < len(side.piece) < 3:  # so that neighbours have one point in common
-        parts = [side.within(side.low * 0 + x, side.low * 0 + x + 0.5) for x in (0.0, 0.5)]
-        side = Side(*(np.stack(x, axis=1).reshape(-1, *x[0].shape[1:]) for x in zip(*parts, strict=True)))
-    i, j = candidates(*_boxes(side, tolerance), None)
-    count = len(side.piece)
-    kind = np.where(i == j, SAME, APART)
-    P = side.points
-    following = (np.arange(count) + 1) % max(count, 1)
-    gap = abs(P[following, 0] - P[:, -1]).max(axis=1) if count else np.zeros(0)
-    shared = gap <= 4 * (side.error + side.error[following]) + tolerance * (tolerance > 0)
-    kind[(j == i + 1) & shared[i]] = NEXT
-    if ring and count > 2:
-        last = (i == 0) & (j == count - 1) & shared[j]
-        kind[last] = NEXT
-        i, j = np.where(last, j, i), np.where(last, i, j)
-    return Pairs(side.taken(i), side.taken(j), kind)
+    """Return the pairs of pieces of one curve whose boxes meet."""
+    one = np.zeros(len(curve.side.piece), np.int64)
+    return pairs_within(curve.side, one, np.array([closed(curve, 0)]), one[:1], tolerance)

@@ -208,6 +208,17 @@ def moved(path: Subpath, encoder: Encoder) -> float:
     return worst
 
 
+def as_written(path: Subpath, encoder: Encoder) -> Subpath:
+    """Return a subpath with the numbers that a reader of its data finds."""
+    segments: list[Segment] = []
+    for segment in path.segments:
+        if isinstance(segment, Arc):
+            segments.append(segment._replace(end=_rounded(segment.end, encoder)))
+        else:
+            segments.append(tuple(_rounded(p, encoder) for p in segment))
+    return Subpath(_rounded(path.start, encoder), segments, path.closed)
+
+
 def _rounded(point: Point, encoder: Encoder) -> Point:
     x, y = encoder.grid(point)
     return encoder.value(x), encoder.value(y)

@@ -61,6 +61,9 @@ class Written(NamedTuple):
     moved: list[float]
     #: the splines of which the new text is taken
     new: set[int]
+    #: each subpath before its numbers are rounded, and what rounds them
+    ways: list[Subpath]
+    encoder: Encoder
 
 
 class Known(NamedTuple):
@@ -138,25 +141,32 @@ class Drawing:
     ) -> Iterator[tuple[Outline, Written]]:
         """Yield the outlines whose data is replaced, with what by."""
         for outline in self.outlines:
-            some = {i: changed[i] for i in outline.splines if i in changed}
-            if not some and not any(i in accuracy for i in outline.splines):
-                continue
-            if outline.span is None:
-                if some:
-                    where = f"line {outline.element.line}, <{outline.element.tag}>"
-                    raise FileError(f"{where}: its outline does not stand there as path data, so it cannot be replaced")
-                continue
-            allowed = [accuracy.get(i, 0.0) if i >= 0 else math.inf for i in outline.splines]
-            known = self._known.get(outline.span)
-            if known and not longer and known.allowed == allowed and known.says(some):
-                found = known.written
-            else:
-                found = _text(outline, some, allowed, longer)
-                if not longer:
-                    self._known[outline.span] = Known(allowed, {i: some[i] for i in found.new}, found)
-            a, b = outline.span
-            if (longer and some) or len(found.text) < b - a:
+            found = self.written(outline, changed, accuracy, longer)
+            if found:
                 yield outline, found
+
+    def written(
+        self, outline: Outline, changed: Mapping[int, Spline], accuracy: Mapping[int, float], longer: bool
+    ) -> Written | None:
+        """Return what an outline's data is replaced by, as for `rewritten`; None if it stays."""
+        some = {i: changed[i] for i in outline.splines if i in changed}
+        if not some and not any(i in accuracy for i in outline.splines):
+            return None
+        if outline.span is None:
+            if some:
+                where = f"line {outline.element.line}, <{outline.element.tag}>"
+                raise FileError(f"{where}: its outline does not stand there as path data, so it cannot be replaced")
+            return None
+        allowed = [accuracy.get(i, 0.0) if i >= 0 else math.inf for i in outline.splines]
+        known = self._known.get(outline.span)
+        if known and not longer and known.allowed == allowed and known.says(some):
+            found = known.written
+        else:
+            found = _text(outline, some, allowed, longer)
+            if not longer:
+                self._known[outline.span] = Known(allowed, {i: some[i] for i in found.new}, found)
+        a, b = outline.span
+        return found if (longer and some) or len(found.text) < b - a else None
 
 
 def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = None) -> Drawing:
@@ -245,7 +255,7 @@ def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder, 
     """Return the path data of an outline: of each subpath the shorter of the new text and the old one, if asked."""
     if outline.corners:
         return _points(outline, changed, encoder)
-    parts, pen, worst, new = [], START, [], set()
+    parts, pen, worst, new, chosen = [], START, [], set(), []
     within = STRAIGHT / 2 * 10.0**-encoder.digits if encoder.digits is not None else 0.0
     for subpath, i in zip(outline.subpaths, outline.splines, strict=True):
         ways = [] if i in changed and longer else [(subpath, 0.0)]
@@ -254,9 +264,10 @@ def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder, 
         found = [(encoder.subpath(way, pen), way, off) for way, off in ways]
         (text, pen), way, off = min(found, key=lambda each: len(each[0][0]))
         parts.append(text)
+        chosen.append(way)
         worst.append(off if encoder.digits is None else off + moved(way, encoder))
         new |= {i} if way is not subpath else set()
-    return Written("".join(parts), worst, new)
+    return Written("".join(parts), worst, new, chosen, encoder)
 
 
 def _points(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -> Written:
@@ -269,7 +280,8 @@ def _points(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder) -
     if way.closed and points[-1] == points[0]:
         points.pop()
     numbers = [encoder.number(x) for point in points for x in encoder.grid(point)]
-    return Written(separated(numbers), [off if encoder.digits is None else off + moved(way, encoder)], {*changed} & {i})
+    worst = [off if encoder.digits is None else off + moved(way, encoder)]
+    return Written(separated(numbers), worst, {*changed} & {i}, [way], encoder)
 
 
 def subpath_of(spline: Spline, closed: bool, within: float = 0.0, arcs: Sequence[Arched] = ()) -> tuple[Subpath, float]:

@@ -31,6 +31,8 @@ class Outlined(NamedTuple):
     curve: Spline
     nets: Array
     arcs: list[Arched]
+    #: the segment that each piece is of
+    segments: Array
 
 
 def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
@@ -42,16 +44,17 @@ def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
 @np.errstate(over="ignore", invalid="ignore")
 def outlined(path: Subpath, place: Affine = IDENTITY) -> Outlined | None:
     """Return a subpath under a map of the plane; None if it goes nowhere."""
-    pieces, arcs = _going_somewhere(path)
+    pieces, arcs, owners = _going_somewhere(path)
     if not pieces:
         return None
+    segments = np.array(owners)
     nets = mapped(_nets(pieces), place)
     if not np.isfinite(nets).all():
         raise FileError("the outline reaches beyond float64")
     steps = np.hypot(*(nets[:, 1:] - nets[:, :-1]).T).T
     polygon = steps.sum(axis=1)
     if not polygon.all():  # of a piece so short that its length is lost
-        nets, polygon, arcs = nets[polygon > 0], polygon[polygon > 0], []
+        nets, segments, polygon, arcs = nets[polygon > 0], segments[polygon > 0], polygon[polygon > 0], []
     if not len(nets):
         return None
     chord = np.hypot(*(nets[:, -1] - nets[:, 0]).T)
@@ -59,23 +62,27 @@ def outlined(path: Subpath, place: Affine = IDENTITY) -> Outlined | None:
     if not np.isfinite(t[-1]):
         raise FileError("the outline is longer than float64 can say")
     arched = [Arched(each, nets[a:b], a) for each, a, b in arcs if a < b]
-    return Outlined(joined(nets, t, path.closed), nets, arched)
+    return Outlined(joined(nets, t, path.closed), nets, arched, segments)
 
 
-def _going_somewhere(path: Subpath) -> tuple[list[tuple[Point, ...]], list[tuple[Arc, int, int]]]:
-    """Return the points of each piece, the first one included, and which are arcs; those that stay are left out."""
+def _going_somewhere(path: Subpath) -> tuple[list[tuple[Point, ...]], list[tuple[Arc, int, int]], list[int]]:
+    """Return the points of each piece, the first one included, which are arcs, and of which segment each is.
+
+    Those that stay where they are are left out.
+    """
     pieces: list[tuple[Point, ...]] = []
-    arcs = []
+    arcs, owners = [], []
     here = path.start
-    for segment in path.segments:
+    for number, segment in enumerate(path.segments):
         first = len(pieces)
         for piece in arc(here, *segment) if isinstance(segment, Arc) else (segment,):
             if any(p != here for p in piece):
                 pieces.append((here, *piece))
+                owners.append(number)
             here = piece[-1]
         if isinstance(segment, Arc):
             arcs.append((segment, first, len(pieces)))
-    return pieces, arcs
+    return pieces, arcs, owners
 
 
 def _nets(pieces: list[tuple[Point, ...]]) -> Array:
