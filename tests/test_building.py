@@ -132,7 +132,7 @@ def test_knots_given_for_a_space_are_told():
         lambda: kw.insertion_matrix(kw.SplineSpace(1, t), t),
         lambda: kw.stability.condition(t, 0.5),
         lambda: kw.stability.extremal(t, 0.5),
-        lambda: kw.stability.kappa(t),
+        lambda: kw.stability.basis_condition(t),
         lambda: kw.stability.conversion_bound(t, t),
     ):
         with pytest.raises(kw.KnotError, match=r"list given; .* takes a SplineSpace"):

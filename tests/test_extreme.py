@@ -176,7 +176,7 @@ def test_what_needs_floats_says_so():
         lambda: kw.interpolate(far, degree=1),
         lambda: kw.fit(np.array(far), 0.1),
         lambda: kw.reduce(_beyond()[0], 0.1, distance="geometric"),
-        lambda: kw.stability.kappa(_beyond()[0].space),
+        lambda: kw.stability.basis_condition(_beyond()[0].space),
         lambda: kw.convert(_beyond()[0], _beyond()[0].space.with_knots(5), how="interpolation"),
     ):
         with pytest.raises(kw.KnotworkError, match="float64 cannot hold"):

@@ -206,7 +206,7 @@ def refinement() -> Any:
     best = chebyshev(space)
     axes[1].plot(u, best.spline(u), color=KNOT, linewidth=1.8, label="the spline")
     axes[1].plot(best.extrema, best.spline(best.extrema), "o", color=INK, markersize=5, label="its extrema")
-    plain(axes[1], title=f"Chebyshev spline: κ = {kw.stability.kappa(space):.4g}", ylim=(-1.4, 1.4))
+    plain(axes[1], title=f"Chebyshev spline: κ = {kw.stability.basis_condition(space):.4g}", ylim=(-1.4, 1.4))
     for ax in axes:
         ax.axhspan(-1, 1, color=INK, alpha=0.05, linewidth=0)
         ax.plot(space.knots, np.full(len(space.knots), -1.3), "|", color=KNOT, markersize=9)

@@ -50,7 +50,8 @@ def in_order(t: Array) -> bool:
 
 def distinct(knots: Array) -> tuple[Array, Array]:
     """Return the distinct values of sorted knots and the multiplicity of each."""
-    differs = np.ones(len(knots) + 1, bool)
+    differs = np.empty(len(knots) + 1, bool)
+    differs[0] = differs[-1] = True
     differs[1:-1] = knots[1:] != knots[:-1]
     edges = differs.nonzero()[0]
     return knots[edges[:-1]], edges[1:] - edges[:-1]
@@ -122,7 +123,8 @@ def merged(a: Array, b: Array) -> Array:
 
 def multiplicities(knots: Array, values: Array) -> Array:
     """Return how often each of `values` occurs among sorted knots."""
-    return np.searchsorted(knots, values, "right") - np.searchsorted(knots, values, "left")
+    counts: Array = knots.searchsorted(values, "right") - knots.searchsorted(values, "left")
+    return counts
 
 
 def nearest_knot(knots: Array, x: Any) -> Any:

@@ -42,10 +42,10 @@ def told(result):
 def test_the_condition_of_a_basis(run, curve):
     kw.write("parabola.json", kw.curve([[0.0, 0], [1, 1], [2, 0]], degree=2))
     assert told(run("parabola.json", "--json")) == [{"index": 0, "degree": 2, "points": 3, "basis": 3.0}]
-    assert told(run("curve.json", "--json"))[0]["basis"] == kw.stability.kappa(curve.space)
+    assert told(run("curve.json", "--json"))[0]["basis"] == kw.stability.basis_condition(curve.space)
     lines = run("curve.json").stdout.splitlines()
     assert lines[0] == "curve.json: 1 spline"
-    assert lines[-1].split() == ["0", "3", "5", f"{kw.stability.kappa(curve.space):.6g}"]
+    assert lines[-1].split() == ["0", "3", "5", f"{kw.stability.basis_condition(curve.space):.6g}"]
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_closed_curves_are_opened_and_surfaces_have_parameters(run):
     net = kw.surface(np.random.default_rng(1).random((3, 5, 3)), degree=(2, 4))
     kw.write("both.json", [closed, net])
     rows = told(run("both.json", "--axis", "0", "-k", "0.5", "--json"))
-    assert rows[0]["basis"] == pytest.approx(kw.stability.kappa(kw.clamp(closed).space))
+    assert rows[0]["basis"] == pytest.approx(kw.stability.basis_condition(kw.clamp(closed).space))
     assert rows[1]["basis"] == pytest.approx(3)
     refined = [net.spaces[0].with_knots(0.5), net.spaces[1]]
     assert rows[1]["error"] == kw.stability.relative_error_bound(net, refined)

@@ -14,7 +14,7 @@ import knotwork as kw
 import oracle
 import strategies
 from knotwork.errors import KnotError
-from knotwork.stability import condition, extremal, kappa, uniform
+from knotwork.stability import basis_condition, condition, extremal, uniform
 
 
 def solved(rows, values):
@@ -174,7 +174,7 @@ def test_finer_is_worse_and_the_basis_is_the_limit(degree, seed):
     """1 <= δ(coarser) <= δ(finer) <= κ, which it nears (Proposition 6.2.1)."""
     rng = np.random.default_rng(seed)
     space = kw.SplineSpace(degree, np.repeat([0, *np.cumsum(rng.integers(1, 9, 3))], [degree + 1, 1, 1, degree + 1]))
-    most = kappa(space)
+    most = basis_condition(space)
     finer, found = space, [1.0]
     for _ in range(5):
         finer = finer.with_knots((finer.breaks[1:] + finer.breaks[:-1]) / 2)

@@ -109,7 +109,11 @@ def _condition(spline: kw.Spline, knots: Sequence[float], parts: int | None, axi
     if spline.spaces[axis].periodic:
         spline = kw.clamp(spline)
     space = spline.spaces[axis]
-    row: dict[str, Any] = {"degree": space.degree, "points": space.dimension, "basis": kw.stability.kappa(space)}
+    row: dict[str, Any] = {
+        "degree": space.degree,
+        "points": space.dimension,
+        "basis": kw.stability.basis_condition(space),
+    }
     new = [*knots, *(dividing(space.breaks, parts) if parts else [])]
     if new:
         refined = space.with_knots(new)

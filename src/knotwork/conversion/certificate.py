@@ -124,7 +124,7 @@ def lifted(
             A = matrix(space, finer)
             c, m = A.apply(c, axis), m + roundings(space, finer)
             if local:
-                sizes = largest_in_rows(A, sizes, axis, finer)
+                sizes = _largest_in_rows(A, sizes, axis, finer)
     return Lifted(c, sizes, m)
 
 
@@ -149,17 +149,12 @@ def roundings(space: SplineSpace, finer: SplineSpace) -> int:
     return 12 * sum(range(space.order, finer.order + 1))
 
 
-def largest_in_rows(A: Banded, sizes: Array, axis: int, finer: SplineSpace) -> Array:
+def _largest_in_rows(A: Banded, sizes: Array, axis: int, finer: SplineSpace) -> Array:
     """Return the largest of the sizes along an axis that each row of an embedding in `finer` combines."""
     gaps = finer.knots[1:] - finer.knots[:-1]
-    counts = A.entries != 0
-    if gaps[gaps > 0].min() < APART * (finer.knots[-1] - finer.knots[0]):
-        counts = np.ones(counts.shape, bool)
-    P = np.moveaxis(sizes, axis, -1)
-    result = np.zeros((*P.shape[:-1], len(A.first)), P.dtype)
-    for r in range(counts.shape[1]):
-        result = np.maximum(result, P[..., (A.first + r) % A.columns] * counts[:, r])
-    return np.moveaxis(result, -1, axis)
+    if gaps[gaps > 0].min() < APART * (finer.knots[-1] - finer.knots[0]):  # a weight may have been rounded to 0
+        A = Banded(A.first, np.ones_like(A.entries), A.columns)
+    return A.largest(sizes, axis)
 
 
 class Certificate:

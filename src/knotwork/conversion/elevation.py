@@ -191,5 +191,5 @@ def _raised_knots(space: SplineSpace) -> tuple[SplineSpace, Array, Array, int]:
     W = distinct(t)[0]
     T = merged(t, W)
     a, b = space.domain
-    lo, end = int(np.searchsorted(T, a, "right")) - n - 2, int(np.searchsorted(T, b, "left")) + n + 2
+    lo, end = int(T.searchsorted(a, "right")) - n - 2, int(T.searchsorted(b)) + n + 2
     return SplineSpace.trusted(n + 1, T[lo:end].copy()), T, W, lo

@@ -73,6 +73,19 @@ def apply_rows(first, E, P, out, D):
 
 
 @kernel
+def largest_in_rows(first, E, P, out, D):
+    """out[a, i] = the largest P[a, first[i] + r], r with E[i, r] ≠ 0, in each coordinate, or 0; P is not negative."""
+    for a in range(len(P)):
+        for i in range(len(first)):
+            for c in range(len(D)):
+                most = P[a, first[i], c] - P[a, first[i], c]
+                for r in range(E.shape[1]):
+                    if E[i, r] != 0:
+                        most = max(most, P[a, first[i] + r, c])
+                out[a, i, c] = most
+
+
+@kernel
 def pack(first, last, E, limit, wraps):
     """Zero what follows E[i, last[i]]; unless the rows wrap around, move those that start beyond `limit` left to it."""
     for i in range(len(first)):
@@ -218,14 +231,24 @@ class Banded(Frozen):
 
     def apply(self, array: Array, axis: int) -> Array:
         """Return `array` with the matrix applied along one axis."""
-        P = as_blocks(array, axis)
-        width = self.entries.shape[1]
-        if self.wraps:
-            P = np.ascontiguousarray(P[:, np.arange(self.columns + width - 1) % self.columns])
+        P = self._unwrapped(as_blocks(array, axis))
         E = in_arithmetic_of(P, self.entries, "entries", PointError) if P.dtype == object else self.entries
         out = empty((len(P), len(self.first), P.shape[2]), E.dtype if E.dtype == object else P.dtype)
         apply_rows(self.first, E, P, out, extent(P.shape[2]))
         return along(out, array, axis)
+
+    def largest(self, sizes: Array, axis: int) -> Array:
+        """Return the largest of the sizes along one axis that each row combines: those whose entries are not 0."""
+        P = self._unwrapped(as_blocks(sizes, axis))
+        out = empty((len(P), len(self.first), P.shape[2]), P.dtype)
+        largest_in_rows(self.first, self.entries, P, out, extent(P.shape[2]))
+        return along(out, sizes, axis)
+
+    def _unwrapped(self, P: Array) -> Array:
+        """Return blocks (A, columns, B) with the first of them again after the last, where rows reach as far."""
+        if not self.wraps:
+            return P
+        return np.ascontiguousarray(P[:, np.arange(self.columns + self.entries.shape[1] - 1) % self.columns])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
         """Return the matrix with its zeros: what NumPy and SciPy ask for; `tocsr` needs less room."""

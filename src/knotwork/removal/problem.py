@@ -9,7 +9,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.conversion.certificate import warn_of_rounding
 from knotwork.insertion.refinement import matrix_to
-from knotwork.linear.banded import Banded, along, as_blocks
+from knotwork.linear.banded import along, as_blocks
 from knotwork.linear.least_squares import least_squares
 from knotwork.removal.ranking import ranked
 from knotwork.removal.tolerance import Tolerance
@@ -142,7 +142,7 @@ class Original:
         c = self._as_curve(other.coefficients)
         shape = (len(self.d), self.d.shape[1] // self.spline.width, self.spline.width)
         back, ours = A.apply(c, 0).reshape(shape), self.d.reshape(shape)
-        off = self.unit * (_largest_in_rows(A, np.abs(c)).reshape(shape) + np.abs(ours))
+        off = self.unit * (A.largest(np.abs(c), 0).reshape(shape) + np.abs(ours))
         if not self.spline.rational:
             found = np.abs(back - ours)
             bound = found + off
@@ -220,14 +220,6 @@ class Original:
         rows = rows % N if self.space.periodic else np.clip(rows, 0, N - 1)
         result: Array = self.strict[rows].max(axis=1).astype(np.float64)
         return result
-
-
-def _largest_in_rows(A: Banded, sizes: Array) -> Array:
-    """Return the largest of the sizes that each row combines; only insertion far below the unit loses a weight to 0."""
-    largest: Array = sizes[A.first % A.columns] * (A.entries[:, :1] != 0)
-    for r in range(1, A.entries.shape[1]):
-        largest = np.maximum(largest, sizes[(A.first + r) % A.columns] * (A.entries[:, r : r + 1] != 0))
-    return largest
 
 
 def end_points(space: SplineSpace) -> Array:

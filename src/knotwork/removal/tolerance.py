@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from fractions import Fraction
@@ -90,15 +91,16 @@ def lengths(change: Array) -> Array:
     if change.shape[-1] == 1:
         only: Array = change[..., 0]
         return only
-    largest = change.max(axis=-1)
+    columns = [change[..., i] for i in range(change.shape[-1])]  # NumPy is slow along a short last axis
+    largest = functools.reduce(np.maximum, columns)
     scale = np.where(largest > 0, largest, largest * 0 + 1)
+    squares = sum((column / scale) ** 2 for column in columns)
     if change.dtype == object:
-        squares = ((change / scale[..., None]) ** 2).sum(axis=-1)
         exact: Array = scale * np.vectorize(_root_above, otypes=[object])(squares)
         return exact
     unit = np.finfo(change.dtype).eps
-    result: Array = scale * np.sqrt(((change / scale[..., None]) ** 2).sum(axis=-1)) * (1 + 4 * change.shape[-1] * unit)
-    return np.where(np.count_nonzero(change, axis=-1) <= 1, largest, result)
+    result: Array = scale * np.sqrt(squares) * (1 + 4 * len(columns) * unit)
+    return np.where(sum(column != 0 for column in columns) <= 1, largest, result)
 
 
 def _root_above(square: Any) -> Any:

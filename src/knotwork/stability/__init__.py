@@ -3,7 +3,8 @@
 from knotwork.stability.condition_numbers import condition, extremal
 from knotwork.stability.conversion import ConversionBound, conversion_bound
 from knotwork.stability.rounding import relative_error_bound
-from knotwork.stability.worst_cases import Worst, basis_condition, kappa, uniform, worst
+from knotwork.stability.worst_cases import Worst, basis_condition, uniform, worst
+from knotwork.stability.worst_cases import kappa as kappa  # the former name of basis_condition
 
 __all__ = [
     "ConversionBound",
@@ -12,7 +13,6 @@ __all__ = [
     "condition",
     "conversion_bound",
     "extremal",
-    "kappa",
     "relative_error_bound",
     "uniform",
     "worst",

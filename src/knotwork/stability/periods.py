@@ -45,7 +45,7 @@ def extremal_coefficients(A: Banded) -> Array:
     return best
 
 
-def kappa_of_period(space: SplineSpace) -> float:
+def condition_of_period(space: SplineSpace) -> float:
     """Return the largest coefficient of a spline of a periodic space without jumps whose values are in [-1, 1]."""
     space = SplineSpace(space.degree, space.knots.astype(np.float64), periodic=True)
     samples = np.sort(np.concatenate([space.breaks[:-1], dividing(space.breaks, 2 * space.order)]))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import warnings
 from fractions import Fraction
-from typing import Any, Self
+from typing import Any, Self, overload
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from knotwork.conversion.chebyshev import between_jumps, chebyshev
 from knotwork.errors import KnotError, ParameterError
 from knotwork.space import SplineSpace, require_space
 from knotwork.stability.condition_numbers import condition
-from knotwork.stability.periods import kappa_of_period
+from knotwork.stability.periods import condition_of_period
 
 
 class Worst(float):
@@ -108,10 +109,20 @@ def uniform(k: int, s: Any) -> Any:
     return condition(integers.in_exact_arithmetic() if knot.dtype == object else integers, knot)
 
 
-def kappa(space: SplineSpace) -> float:
-    """Return the condition number of the B-spline basis: the largest coefficient of a spline with values in [-1, 1].
+@overload
+def basis_condition(of: SplineSpace) -> float: ...
+@overload
+def basis_condition(of: int) -> Fraction: ...
+def basis_condition(of: SplineSpace | int) -> float | Fraction:
+    """Return κ, the condition number of a basis: the largest coefficient of a spline with values in [-1, 1].
 
-    No refinement of a clamped space has a larger condition number, and fine ones come close (Proposition 6.2.1).
+    No refinement of a clamped space has a larger condition number of insertion, and fine ones come close
+    (Proposition 6.2.1).
+
+    Parameters
+    ----------
+    of : SplineSpace or int
+        Of the B-splines of a space, or, given an order k, of the Bernstein basis of degree k - 1, exactly: d_k.
 
     Raises
     ------
@@ -120,41 +131,41 @@ def kappa(space: SplineSpace) -> float:
 
     Notes
     -----
-    The largest coefficient of the Chebyshev spline of each part between jumps. Around a period without jumps it is
-    found for each coefficient by itself, from below, to ten digits.
+    Of a space, the largest coefficient of the Chebyshev spline of each part between jumps. Around a period without
+    jumps it is found for each coefficient by itself, from below, to ten digits. Of the Bernstein basis, the largest
+    coefficient of a Chebyshev polynomial: max C(2N, 2i) / C(N, i), N = k - 1 (Lyche 1978).
 
     Examples
     --------
     >>> import knotwork as kw
-    >>> round(kw.stability.kappa(kw.SplineSpace.bezier(3, [0, 1])), 12)
+    >>> round(kw.stability.basis_condition(kw.SplineSpace.bezier(3, [0, 1])), 12)
     5.0
-    >>> round(kw.stability.kappa(kw.SplineSpace.uniform(3, 8, periodic=True)), 9)
+    >>> round(kw.stability.basis_condition(kw.SplineSpace.uniform(3, 8, periodic=True)), 9)
     3.0
-    """
-    require_space(space, "kappa")
-    parts = between_jumps(space)
-    if parts[0].periodic:
-        return kappa_of_period(space)
-    return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in parts)
-
-
-def basis_condition(k: int) -> Fraction:
-    """Return d_k, the condition number of the Bernstein basis of order k.
-
-    Parameters
-    ----------
-    k : int
-        The order, degree + 1.
-
-    Notes
-    -----
-    The largest coefficient of a Chebyshev polynomial: max C(2N, 2i) / C(N, i), N = k - 1 (Lyche 1978).
-
-    Examples
-    --------
-    >>> import knotwork as kw
     >>> [str(kw.stability.basis_condition(k)) for k in (3, 4, 5)]
     ['3', '5', '35/3']
     """
-    N = whole(k, "order", 1, ParameterError) - 1
+    if not isinstance(of, int | float | str | np.number):
+        require_space(of, "basis_condition")
+        parts = between_jumps(of)
+        if parts[0].periodic:
+            return condition_of_period(of)
+        return max(float(abs(chebyshev(part).spline.coefficients).max()) for part in parts)
+    N = whole(of, "order", 1, ParameterError) - 1
     return max(Fraction(math.comb(2 * N, 2 * i), math.comb(N, i)) for i in range(N + 1))
+
+
+def kappa(space: SplineSpace) -> float:
+    """Return `basis_condition` of a space, which was called so.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import knotwork as kw
+    >>> with warnings.catch_warnings(action="ignore"):
+    ...     round(kw.stability.kappa(kw.SplineSpace.bezier(3, [0, 1])), 12)
+    5.0
+    """
+    require_space(space, "kappa")
+    warnings.warn("kappa is now called basis_condition", DeprecationWarning, stacklevel=2)
+    return basis_condition(space)
