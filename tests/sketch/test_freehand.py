@@ -1,9 +1,15 @@
 """Curves drawn by hand: few knots near the hand's path, and parts of a curve drawn anew (§7.4, §7.6)."""
 
+import itertools
+
 import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import knotwork as kw
 from knotwork.sketch import Sketch, stroke
+from knotwork.sketch.freehand import fitted
 
 ARC = np.stack([np.cos(np.linspace(np.pi, 0, 60)), np.sin(np.linspace(np.pi, 0, 60))], axis=1)
 LINE = kw.curve(np.stack([np.linspace(-4, 4, 17), 0.05 * np.sin(np.arange(17))], axis=1))
@@ -32,3 +38,53 @@ def test_what_was_read_can_be_switched():
     assert stroke(Sketch(), bent).case == "new"
     assert stroke(Sketch(), bent, reading="curve").case == "freehand"
     assert stroke(Sketch(), ARC, reading="straight").case == "new"
+
+
+def near(path, curve, tolerance):
+    """Tell whether a curve is proven to be near the polyline through a path."""
+    t = np.arange(float(len(path)))
+    polyline = kw.curve(path, 1, np.concatenate([t[:1], t, t[-1:]]))
+    return kw.distance_bound(polyline, curve, tolerance * (1 + 1e-9)).proven
+
+
+@given(seed=st.integers(0, 10**5), tolerance=st.sampled_from([0.5, 2.0, 8.0]), pixels=st.booleans())
+@settings(max_examples=12, deadline=None)
+def test_a_curve_is_within_the_tolerance_of_all_samples_and_not_only_of_those_that_are_left(seed, tolerance, pixels):
+    rng = np.random.default_rng(seed)
+    u = np.linspace(0, 1, 400)[:, None]
+    path = 300 * u * [1, 0.2] + 60 * np.sin(2 * np.pi * rng.uniform(0.2, 3, 2) * u + rng.uniform(0, 6, 2))
+    path = path + rng.normal(0, tolerance / 20, path.shape)
+    path = np.round(path) if pixels else path
+    path = path[np.append(True, (np.diff(path, axis=0) != 0).any(axis=1))]
+    curve = fitted(path, tolerance, 3, closed=False)
+    assert curve.space.degree == 3
+    assert near(path, curve, tolerance)
+    assert curve(curve.space.domain[0]).tolist() == path[0].tolist()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4, 5])
+def test_a_drawing_of_any_degree_takes_curves_drawn_by_hand(degree):
+    (curve,) = stroke(Sketch(degree=degree), ARC, tolerance=0.01).sketch.curves
+    assert curve.space.degree == degree
+    assert len(curve.points) < 30
+    assert near(ARC, curve, 0.01)
+    line = kw.curve(np.stack([np.linspace(-4, 4, 41), 0.05 * np.sin(np.arange(41))], axis=1), degree)
+    after = stroke(Sketch([line]), ARC, tolerance=0.01, reach=0.2)
+    assert after.case == "freehand"
+    (redrawn,) = after.sketch.curves
+    assert redrawn.space.degree == degree
+    u = np.concatenate([np.linspace(0, 0.08, 20), np.linspace(0.92, 1, 20)])
+    assert (redrawn(u) == line(u)).all()
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_corners_and_straight_parts_that_leave_few_samples_become_a_smooth_curve_all_the_same(closed):
+    corners = np.array([[0.0, 0], [40, 50], [80, 0], [120, 50], [160, 0], [80, -80], [0, 0]])
+    path = np.concatenate([np.linspace(a, b, 60, endpoint=False) for a, b in itertools.pairwise(corners)])
+    curve = fitted(path, 2.0, 3, closed)
+    assert (curve.space.degree, curve.space.periodic) == (3, closed)
+    there = curve(np.linspace(*curve.space.domain, 2000))
+    away = np.hypot(*(path[:, None] - there[None]).transpose(2, 0, 1))
+    assert max(away.min(axis=0).max(), away.min(axis=1).max()) <= 2.0 + 1.0  # samples lie less than 2 apart
+    straight = fitted(np.linspace([0, 0], [9, 1], 40), 0.1, 3, closed=False)
+    assert (straight.space.degree, len(straight.points)) == (3, 4)

@@ -9,6 +9,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array
 from knotwork.geometry.sampling import even_steps
 from knotwork.removal import fit
+from knotwork.removal.shapes.polyline import picked
 from knotwork.sketch.knot_replacement import with_change
 from knotwork.sketch.polygon import from_segments
 from knotwork.sketch.rules import Change
@@ -16,6 +17,8 @@ from knotwork.spline import Spline
 
 #: points of a curve per interval, to find where a path meets it; a person's hand is not exact
 SAMPLES = 16
+#: part of the tolerance of a curve within which samples are left out first: of two pixels, what whole pixels round off
+THIN = 3 / 8
 
 
 class Meeting(NamedTuple):
@@ -28,8 +31,20 @@ class Meeting(NamedTuple):
 
 
 def fitted(path: Array, tolerance: float, degree: int, closed: bool) -> Spline:
-    """Return a smooth curve with few knots within the tolerance of a path."""
-    return fit(path, tolerance, degree=degree, closed=closed, form="spline", effort="fast").spline
+    """Return a smooth curve with few knots within the tolerance of a path.
+
+    A part of the tolerance goes to fewer samples, the rest to the curve through them: the distances of shapes add up
+    (Fréchet's is a metric). Where that gains nothing, the path has too few samples to leave any out.
+    """
+    thin = picked(path, THIN * tolerance)
+    curve = _fitted(thin.vertices, float(np.nextafter(tolerance - thin.bound, 0)), degree, closed)
+    return curve if len(curve.points) < len(thin.vertices) else _fitted(path, tolerance, degree, closed)
+
+
+def _fitted(path: Array, tolerance: float, degree: int, closed: bool) -> Spline:
+    """Return a curve near a path: its shape, if it is cubic, else the path over its lengths."""
+    distance = "geometric" if degree == 3 else "parametric"
+    return fit(path, tolerance, degree=degree, closed=closed, distance=distance, effort="fast").spline
 
 
 def meetings(path: Array, curve: Spline, reach: float) -> list[Meeting]:

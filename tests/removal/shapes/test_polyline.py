@@ -15,7 +15,7 @@ from scipy.spatial.distance import directed_hausdorff
 import oracle
 from knotwork.removal.shapes.certificate import exact_square
 from knotwork.removal.shapes.lower import fewest_pieces
-from knotwork.removal.shapes.polyline import reduce_polyline
+from knotwork.removal.shapes.polyline import picked, reduce_polyline
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -102,6 +102,36 @@ def test_scaling_by_powers_of_two_changes_nothing(seed, exponent):
     one, two = reduce_polyline(Y, 1.5), reduce_polyline(np.ldexp(Y, exponent), float(np.ldexp(1.5, exponent)))
     assert (np.ldexp(one.vertices, exponent) == two.vertices).all()
     assert (one.u == two.u).all()
+
+
+@given(seed=st.integers(0, 10**5), eps=st.sampled_from([1e-6, 0.05, 0.3, 1.0]), each=st.booleans())
+@settings(max_examples=40, deadline=None)
+def test_picked_points_are_some_of_those_given_and_within_the_tolerance(seed, eps, each):
+    rng = np.random.default_rng(seed)
+    points = np.cumsum(rng.normal(0, [1, 0.1], (int(rng.integers(2, 60)), 2)) / 3, axis=0)
+    tolerance = np.array([eps, 2 * eps]) if each else eps
+    result = picked(points, tolerance)
+    rows = points.tolist()
+    at = [rows.index(vertex) for vertex in result.vertices.tolist()]
+    assert (at[0], at[-1]) == (0, len(points) - 1)
+    assert (np.diff(at) > 0).all()
+    assert covers(result, len(points))
+    square, widest = independent.largest_on_path(
+        edges(points), edges(result.vertices), result.u.tolist(), result.s.tolist()
+    )
+    if each:
+        assert all(w <= Fraction(b) <= Fraction(t) for w, b, t in zip(widest, result.bound, tolerance, strict=True))
+    else:
+        assert square <= Fraction(result.bound) ** 2
+        assert result.bound <= eps
+
+
+@pytest.mark.parametrize("eps", [5e-324, 1e-300, 1e-12, 1e300])
+def test_picked_points_at_tolerances_that_leave_all_or_the_ends(eps):
+    points = np.array([[0.0, 0], [1, 1e-3], [2, 0], [3, 1e-3]])
+    result = picked(points, eps)
+    assert len(result.vertices) == (2 if eps > 1 else 4)
+    assert np.all(result.bound <= eps)
 
 
 def test_what_is_kept_stays_bit_for_bit(iceland):
