@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import knotwork as kw
+from knotwork.geometry.sampling import even_steps
 from knotwork.sketch import Sketch, stroke
-from knotwork.sketch.freehand import fitted
+from knotwork.sketch.freehand import SAMPLES, fitted, meetings
 
 ARC = np.stack([np.cos(np.linspace(np.pi, 0, 60)), np.sin(np.linspace(np.pi, 0, 60))], axis=1)
 LINE = kw.curve(np.stack([np.linspace(-4, 4, 17), 0.05 * np.sin(np.arange(17))], axis=1))
@@ -88,3 +89,35 @@ def test_corners_and_straight_parts_that_leave_few_samples_become_a_smooth_curve
     assert max(away.min(axis=0).max(), away.min(axis=1).max()) <= 2.0 + 1.0  # samples lie less than 2 apart
     straight = fitted(np.linspace([0, 0], [9, 1], 40), 0.1, 3, closed=False)
     assert (straight.space.degree, len(straight.points)) == (3, 4)
+
+
+def turn(a, b, c):
+    """Return on which side of the line from a to b each point c is."""
+    return np.sign((b - a)[..., 0] * (c - a)[..., 1] - (b - a)[..., 1] * (c - a)[..., 0])
+
+
+@given(seed=st.integers(0, 10**5), periodic=st.booleans(), degree=st.integers(1, 5))
+@settings(max_examples=40, deadline=None)
+def test_a_path_meets_a_curve_where_their_chords_pass_each_other(seed, periodic, degree):
+    rng = np.random.default_rng(seed)
+    points, path = rng.random((9, 2)), rng.random((30, 2)) * rng.uniform(0.1, 1.5, 2)
+    curve = kw.Spline(kw.SplineSpace.uniform(degree, 9, periodic=periodic), points)
+    there = curve(even_steps(curve, SAMPLES))
+    P, Q, A, B = path[:-1, None], path[1:, None], there[None, :-1], there[None, 1:]
+    crosses = (turn(P, Q, A) != turn(P, Q, B)) & (turn(A, B, P) != turn(A, B, Q))
+    found = meetings(path, curve, 1e-9)
+    assert [int(m.at) for m in found] == np.argwhere(crosses)[:, 0].tolist()
+    for u, at in found:
+        i = int(at)
+        assert np.hypot(*(curve(u) - path[i] - (at - i) * (path[i + 1] - path[i]))) < 0.02
+
+
+def test_a_long_drawing_takes_a_curve_drawn_by_hand():
+    x = np.linspace(0, 1000, 20_000)
+    long = kw.curve(np.stack([x, 20 * np.sin(x / 40)], axis=1))
+    path = [500, -25] + 30 * np.repeat(ARC, 10, axis=0)[:-9] + np.linspace(0, 1e-3, 591)[:, None]
+    after = stroke(Sketch([long]), path, tolerance=0.5, reach=1)
+    assert (after.case, len(after.sketch.curves)) == ("freehand", 1)
+    curve = after.sketch.curves[0]
+    assert curve(curve.space.domain[0]).tolist() == long.points[0].tolist()
+    assert 18_000 < len(curve.points) < 19_500

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.geometry.sampling import even_steps
+from knotwork.geometry.neighbours import candidates
+from knotwork.insertion import to_bezier
 from knotwork.removal import fit
 from knotwork.removal.shapes.polyline import picked
 from knotwork.sketch.knot_replacement import with_change
@@ -15,7 +16,7 @@ from knotwork.sketch.polygon import from_segments
 from knotwork.sketch.rules import Change
 from knotwork.spline import Spline
 
-#: points of a curve per interval, to find where a path meets it; a person's hand is not exact
+#: chords of a curve per interval, to find where a path meets it; a person's hand is not exact
 SAMPLES = 16
 #: part of the tolerance of a curve within which samples are left out first: of two pixels, what whole pixels round off
 THIN = 3 / 8
@@ -47,37 +48,56 @@ def _fitted(path: Array, tolerance: float, degree: int, closed: bool) -> Spline:
     return fit(path, tolerance, degree=degree, closed=closed, distance=distance, effort="fast").spline
 
 
+class Steps(NamedTuple):
+    """Short chords of a curve, some in each interval that comes near a path."""
+
+    #: parameters of their starts and ends
+    u: Array
+    v: Array
+    #: starts and ends, shape (m, 2)
+    A: Array
+    B: Array
+
+
 def meetings(path: Array, curve: Spline, reach: float) -> list[Meeting]:
     """Return where a path meets a curve, in the order of the path: crossings, and ends of the path that lie near it."""
-    u = even_steps(curve, SAMPLES)
-    points = curve(u)
-    found = _crossings(path, points)
-    met = [Meeting(float(u[i] + share * (u[i + 1] - u[i])), at) for i, share, at in found]
-    for end in (0, len(path) - 1):
-        away, i, share = _nearest(path[end], points)
-        if away <= reach and not any(abs(m.at - end) < 1 for m in met):
-            met.append(Meeting(float(u[i] + share * (u[i + 1] - u[i])), float(end)))
+    steps = _steps(path, curve, reach)
+    met = _crossings(path, steps)
+    for end in (0, len(path) - 1) if len(steps.u) else ():
+        away, share = from_segments(path[end], steps.A, steps.B)
+        i = int(np.argmin(away))
+        if away[i] <= reach and not any(abs(m.at - end) < 1 for m in met):
+            met.append(Meeting(_between_parameters(steps, i, share[i]), float(end)))
     return sorted(met, key=lambda meeting: meeting.at)
 
 
-def _crossings(path: Array, points: Array) -> list[tuple[int, float, float]]:
-    """Return where two polylines cross: the segment and share of `points`, the place on the path."""
-    A, d = path[:-1, None], np.diff(path, axis=0)[:, None]
-    C, e = points[None, :-1], np.diff(points, axis=0)[None]
-    turn = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
-    r = C - A
+def _steps(path: Array, curve: Spline, reach: float) -> Steps:
+    """Return chords of those intervals whose control points, as Bézier curves, come within reach of the path's box."""
+    nets, breaks = to_bezier(curve)
+    low, high = path.min(axis=0) - reach, path.max(axis=0) + reach
+    near = ((nets.min(axis=1) <= high) & (nets.max(axis=1) >= low)).all(axis=1)
+    a, b = breaks[:-1][near, None], breaks[1:][near, None]
+    u = np.concatenate([a + (b - a) * (np.arange(SAMPLES) / SAMPLES), b], axis=1)
+    points = curve(u.ravel()).reshape(*u.shape, 2)
+    return Steps(u[:, :-1].ravel(), u[:, 1:].ravel(), points[:, :-1].reshape(-1, 2), points[:, 1:].reshape(-1, 2))
+
+
+def _between_parameters(steps: Steps, i: int, share: float) -> float:
+    return float(steps.u[i] + share * (steps.v[i] - steps.u[i]))
+
+
+def _crossings(path: Array, steps: Steps) -> list[Meeting]:
+    """Return where a path crosses chords: only those are looked at whose boxes meet those of its segments."""
+    P, Q = path[:-1], path[1:]
+    boxes = np.minimum(steps.A, steps.B), np.maximum(steps.A, steps.B)
+    k, i = candidates(np.minimum(P, Q), np.maximum(P, Q), boxes)
+    d, e, r = Q[k] - P[k], steps.B[i] - steps.A[i], steps.A[i] - P[k]
+    turn = d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        along = (r[..., 0] * e[..., 1] - r[..., 1] * e[..., 0]) / turn
-        share = (r[..., 0] * d[..., 1] - r[..., 1] * d[..., 0]) / turn
+        along = (r[:, 0] * e[:, 1] - r[:, 1] * e[:, 0]) / turn
+        share = (r[:, 0] * d[:, 1] - r[:, 1] * d[:, 0]) / turn
     hit = (turn != 0) & (along >= 0) & (along < 1) & (share >= 0) & (share < 1)
-    return [(int(i), float(share[k, i]), float(k + along[k, i])) for k, i in np.argwhere(hit)]
-
-
-def _nearest(point: Array, points: Array) -> tuple[float, int, float]:
-    """Return how near a polyline comes to a point, and the segment and share of its foot."""
-    away, share = from_segments(point, points[:-1], points[1:])
-    i = int(np.argmin(away))
-    return float(away[i]), i, float(share[i])
+    return [Meeting(_between_parameters(steps, i[h], share[h]), float(k[h] + along[h])) for h in np.flatnonzero(hit)]
 
 
 def redrawn(curve: Spline, path: Array, met: list[Meeting], tolerance: float) -> Spline:
