@@ -252,10 +252,10 @@ def test_a_composite_glyph_stands_for_its_parts(truetype):
     assert [place.name for place in document.places] == ["o", "n"]
 
 
-def test_a_font_that_varies_is_refused(truetype, tmp_path):
+def test_a_font_that_varies_by_components_is_refused(truetype, tmp_path):
     font = TTFont(truetype)
-    font["gvar"] = DefaultTable("gvar")
-    font["gvar"].data = b"\0" * 20
+    font["VARC"] = DefaultTable("VARC")
+    font["VARC"].data = b"\0" * 20
     font.save(tmp_path / "v.ttf")
     with pytest.warns(UserWarning, match="the font varies"):
         document = kw.open(tmp_path / "v.ttf")

@@ -228,7 +228,8 @@ def _font(
 
     document = job.reading.document(file)
     start = time.perf_counter() - compiling.seconds()
-    units = require_font(document).units
+    font = require_font(document)
+    units, varies = font.units, font.varies
     allowed = tolerance.value * units if tolerance.relative else tolerance.value
     found = lighter_font(document, allowed, keep=keep or KEPT, add_extrema=add_extrema)
     data, _ = found.document.packed(output if output and output != STREAM else file)
@@ -239,6 +240,7 @@ def _font(
     if job.as_json:
         told: dict[str, Any] = {"input": str(file), "output": str(output) if output else None, "tolerance": allowed}
         told |= {"distance": "geometric", "bound": found.bound, "glyphs": list(found.glyphs), "hinted": found.hinted}
+        told |= {"apart": found.apart} if varies else {}
         return told | {"points": list(found.points), "bytes": list(sizes)}
     changed, every = found.glyphs
     job.echo(
@@ -248,7 +250,12 @@ def _font(
     job.echo(f"{before:,} → {after:,} points, {sizes[0]:,} → {sizes[1]:,} bytes, {seconds:.2f} s")
     hints = f"; {found.hinted:,} of them had hints or instructions, which are dropped" if found.hinted else ""
     job.echo(f"{report.counted(changed, 'glyph')} with {'other' if add_extrema else 'fewer'} points{hints}")
-    job.echo(f"no point is farther than {report.upward(found.bound):.6g} from where it was: proven, rounding included")
+    if found.apart:
+        job.echo(f"{report.counted(found.apart, 'glyph')} change along the axes in too many ways, and stay")
+    where = ", anywhere on the axes" if varies else ""
+    job.echo(
+        f"no point is farther than {report.upward(found.bound):.6g} from where it was{where}: proven, rounding included"
+    )
     job.echo(written_to(output, 0.0))
     return None
 

@@ -10,6 +10,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.document import Document
 from knotwork.files.fonts import cff, truetype
+from knotwork.files.fonts.inplace import VARIES
 from knotwork.files.fonts.lighter import require_font
 from knotwork.files.fonts.reading import drawn
 from knotwork.files.fonts.sfnt import font_of, reading_font
@@ -61,8 +62,8 @@ def converted_font(document: Document, tolerance: float, *, cubic: bool, keep: C
     CFF. Hints and instructions go, and the tables that go with them.
     """
     font = require_font(document)
-    if font.stays:
-        raise FileError(f"{document.path}: the outlines cannot be converted: {font.stays}")
+    if font.stays or font.varies:
+        raise FileError(f"{document.path}: the outlines cannot be converted: {font.stays or VARIES}")
     if font.cubic == cubic:
         kind = "cubic" if cubic else "quadratic"
         raise FileError(f"{document.path}: the outlines are {kind} already; knotwork reduce leaves fewer points")

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.fonts import cff, truetype
+from knotwork.files.fonts.along import Along, with_contours
 from knotwork.files.fonts.contours import rounded, spline_of
 from knotwork.files.fonts.reading import named
 from knotwork.files.fonts.sfnt import VARIABLE, font_of, reading_font, require_fonttools, with_tables
-from knotwork.files.fonts.truetype import Glyph
+from knotwork.files.fonts.truetype import Glyph, listed
+from knotwork.files.fonts.variations import rewritten_gvar, varied
 from knotwork.files.places import Place
 from knotwork.spline import Spline
+
+#: why a contour of a font that varies is not replaced by itself
+VARIES = "the font varies, and masters have to change with it: knotwork reduce does that, map and replace do not"
 
 
 class Contour(NamedTuple):
@@ -39,6 +44,9 @@ class Font:
     places: tuple[Place, ...]
     #: why nothing can be replaced, '' if all can
     stays: str
+    #: whether outlines change along axes: then contours are replaced by those of `along` alone, which have masters
+    varies: bool = False
+    along: Mapping[int, Along] = field(default_factory=dict)
 
     def runs(self, i: int) -> list[Array]:
         """Return the runs of a contour as the font holds them."""
@@ -49,7 +57,9 @@ class Font:
         self, changed: Mapping[int, Spline], accuracy: Mapping[int, float], *, even_if_longer: bool = False
     ) -> tuple[bytes, float]:
         """Return the bytes with some contours replaced, and how far rounding moved a point at most, in font units."""
-        new: dict[str, dict[int, list[Array]]] = {}
+        if self.varies:
+            return self._along_axes(changed)
+        new: dict[str, dict[int, Any]] = {}
         worst = 0.0
         for i, spline in sorted(changed.items()):
             at = self.contours[i]
@@ -57,13 +67,35 @@ class Font:
             if self.stays or glyph.stays:
                 raise FileError(f"glyph {glyph.name!r} cannot be replaced: {self.stays or glyph.stays}")
             found = rounded(spline, self.cubic, f"contour {at.number + 1} of glyph {glyph.name!r}")
-            new.setdefault(glyph.name, {})[at.number] = found.runs
+            new.setdefault(glyph.name, {})[at.number] = found.runs if self.cubic else listed(found.runs)
             worst = max(worst, found.bound)
         if not new:
             return self.data, 0.0
         with reading_font():
-            data = (cff if self.cubic else truetype).rewritten(self.data, new)
+            data = cff.rewritten(self.data, new) if self.cubic else truetype.rewritten(self.data, new)
         return data, worst
+
+    def _along_axes(self, changed: Mapping[int, Spline]) -> tuple[bytes, float]:
+        """Return the bytes with contours replaced that have masters, whose rounding counts already."""
+        new: dict[str, dict[int, Along]] = {}
+        for i, spline in sorted(changed.items()):
+            at, found = self.contours[i], self.along.get(i)
+            name = self.glyphs[at.glyph].name
+            if found is None or found.spline is not spline:
+                raise FileError(f"glyph {name!r} cannot be replaced: {VARIES}")
+            new.setdefault(name, {})[at.number] = found
+        if not new:
+            return self.data, 0.0
+        with reading_font():
+            font = font_of(self.data)
+            tuples = {}
+            for name, contours in new.items():
+                glyph = varied(font, name)
+                assert glyph is not None
+                tuples[name] = with_contours(font["glyf"][name], glyph, contours)
+            gvar = rewritten_gvar(self.data, font, {name: each for name, each in tuples.items() if each})
+            points = {name: {n: each.points for n, each in contours.items()} for name, contours in new.items()}
+            return truetype.rewritten(self.data, points, {"gvar": gvar}), 0.0
 
     def packed(self, data: bytes, path: Path) -> bytes:
         """Return the bytes of the font for a file of another suffix: packed if that is .woff.
@@ -108,9 +140,8 @@ def opened(data: bytes, remark: Callable[[str], None], *, glyph: str | Sequence[
         if not cubic:
             names = _parts(font, names, remark, told=glyph is not None)
         glyphs = (cff if cubic else truetype).glyphs_of(font, names)
-    stays = (
-        f"the font varies ({variable[0]}), and its changes along the axes speak of points by number" if variable else ""
-    )
+    stays = f"the font varies by {variable[0]}" if variable else ""
+    varies = "gvar" in font
     contours = [Contour(g, n) for g, each in enumerate(glyphs) for n, runs in enumerate(each.contours) if runs]
     splines = tuple(spline_of(glyphs[g].contours[n], cubic) for g, n in contours)
     places = tuple(
@@ -121,13 +152,13 @@ def opened(data: bytes, remark: Callable[[str], None], *, glyph: str | Sequence[
             stroked=False,
             units="font units",
             where=f"glyph {glyphs[g].name}, contour {n + 1}",
-            fixed=bool(stays or glyphs[g].stays),
+            fixed=bool(stays or varies or glyphs[g].stays),
         )
         for g, n in contours
     )
     if stays:
         remark(f"its outlines cannot be replaced: {stays}")
-    return Font(data, cubic, units, tuple(glyphs), tuple(contours), splines, places, stays)
+    return Font(data, cubic, units, tuple(glyphs), tuple(contours), splines, places, stays, varies)
 
 
 def _parts(font: object, names: list[str], remark: Callable[[str], None], *, told: bool) -> list[str]:

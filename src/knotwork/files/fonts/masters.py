@@ -11,6 +11,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, ParameterError
 from knotwork.files.document import Document
 from knotwork.files.fonts.contours import rounded, spline_of
+from knotwork.files.fonts.inplace import VARIES
 from knotwork.files.fonts.lighter import require_font, runs_of
 from knotwork.removal.outlines import KEPT, cost, outlined
 from knotwork.spline import Spline
@@ -59,8 +60,8 @@ def lighter_masters(documents: Sequence[Document], tolerance: float, *, keep: Co
     first = fonts[0]
     names = [[place.where for place in font.places] for font in fonts]
     for document, font, where in zip(documents, fonts, names, strict=True):
-        if font.stays:
-            raise FileError(f"{document.path}: the outlines cannot be replaced: {font.stays}")
+        if font.stays or font.varies:
+            raise FileError(f"{document.path}: the outlines cannot be replaced: {font.stays or VARIES}")
         if font.cubic != first.cubic:
             raise FileError(f"{document.path}: has outlines of another kind than {documents[0].path}")
         if where != names[0]:

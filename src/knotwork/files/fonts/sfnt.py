@@ -10,8 +10,8 @@ from typing import Any
 
 from knotwork.errors import FileError, KnotworkError, MissingExtraError
 
-#: tables that say how outlines change along the axes of a variable font
-VARIABLE = ("gvar", "CFF2", "cvar", "VARC")
+#: tables that say how outlines change along the axes of a variable font, other than gvar
+VARIABLE = ("CFF2", "VARC")
 
 
 def require_fonttools() -> None:

@@ -20,6 +20,10 @@ MOST = (6, 8, 10, 12)
 _OVERLAP = 0x40
 
 
+#: the points of a contour, and whether each is on the curve
+Points = tuple[Array, list[bool]]
+
+
 class Glyph(NamedTuple):
     """A glyph with contours of its own."""
 
@@ -40,7 +44,7 @@ def glyphs_of(font: Any, names: list[str]) -> list[Glyph]:
         glyph = glyf[name]
         if glyph.numberOfContours <= 0:
             continue
-        contours = [from_points(*each) for each in _points(glyph)]
+        contours = [from_points(*each) for each in points_of(glyph)]
         program = getattr(glyph, "program", None)
         stays = "composite glyphs are placed by the numbers of its points" if name in pinned else ""
         found.append(Glyph(name, contours, bool(program and program.getBytecode()), stays))
@@ -53,7 +57,7 @@ def parts_of(font: Any, name: str) -> list[str]:
     return [each.glyphName for each in glyph.components] if glyph.isComposite() else []
 
 
-def _points(glyph: Any) -> list[tuple[Array, list[bool]]]:
+def points_of(glyph: Any) -> list[Points]:
     """Return the points of each contour, and which are on the curve."""
     points = np.array(list(glyph.coordinates), float).reshape(-1, 2)
     on = [bool(flag & 1) for flag in glyph.flags]
@@ -74,8 +78,10 @@ def _matched_points(glyf: Any) -> set[str]:
     return found
 
 
-def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> bytes:
-    """Return the font with some contours of some glyphs replaced.
+def rewritten(
+    data: bytes, changed: Mapping[str, Mapping[int, Points]], others: Mapping[str, bytes] | None = None
+) -> bytes:
+    """Return the font with some contours of some glyphs replaced, and other tables beside.
 
     Their instructions go, and those of composite glyphs that have them as parts: they speak of points by number.
     """
@@ -88,9 +94,9 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
     new: dict[str, bytes] = {}
     moved: dict[str, int] = {}
     grown = [0, 0]
-    tables: dict[str, bytes] = {}
+    tables: dict[str, bytes] = dict(others or {})
     for name, contours in changed.items():
-        before, glyph = glyf[name], _with(glyf[name], contours)
+        before, glyph = glyf[name], with_points(glyf[name], contours)
         grown = [max(g, n) for g, n in zip(grown, _growth(before, glyph), strict=True)]
         glyph.recalcBounds(glyf)
         moved[name] = glyph.xMin - before.xMin
@@ -117,19 +123,19 @@ def rewritten(data: bytes, changed: Mapping[str, Mapping[int, list[Array]]]) -> 
     return with_tables(data, tables)
 
 
-def _with(glyph: Any, contours: Mapping[int, list[Array]]) -> Any:
+def with_points(glyph: Any, contours: Mapping[int, Points]) -> Any:
     """Return a glyph with some contours replaced, without instructions."""
-    found = _written([_listed(contours[i]) if i in contours else given for i, given in enumerate(_points(glyph))])
+    found = _written([contours.get(i, given) for i, given in enumerate(points_of(glyph))])
     found.flags[0] |= glyph.flags[0] & _OVERLAP
     return found
 
 
 def glyph(contours: list[list[Array]]) -> Any:
     """Return a glyph of contours."""
-    return _written([_listed(runs) for runs in contours])
+    return _written([listed(runs) for runs in contours])
 
 
-def _written(contours: list[tuple[Array, list[bool]]]) -> Any:
+def _written(contours: list[Points]) -> Any:
     """Return a glyph of points and whether they are on the curve."""
     from fontTools.ttLib.tables import ttProgram
     from fontTools.ttLib.tables._g_l_y_f import Glyph as Written
@@ -153,7 +159,7 @@ def _written(contours: list[tuple[Array, list[bool]]]) -> Any:
     return found
 
 
-def _listed(runs: list[Array]) -> tuple[Array, list[bool]]:
+def listed(runs: list[Array]) -> Points:
     """Return the points of a contour that are stored."""
     if len(runs) == 1 and is_ring(runs[0]):
         return runs[0][1:-1], [False] * (len(runs[0]) - 2)

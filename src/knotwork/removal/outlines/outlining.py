@@ -18,6 +18,15 @@ from knotwork.removal.shapes.certificate import ROUNDING, Scaled, sizes
 ROUNDS = 4
 
 
+class Proof(NamedTuple):
+    """The Bézier pieces of the result, and the path along which they are near those of the outline given."""
+
+    nets: Array
+    #: parameters of the result and of the outline, in pieces; they may start anywhere
+    u: Array
+    s: Array
+
+
 class Outlined(NamedTuple):
     """The result of `outlined`."""
 
@@ -27,6 +36,8 @@ class Outlined(NamedTuple):
     bound: float
     #: points stored before and after
     points: tuple[int, int]
+    #: what proves it, of runs that are new
+    proof: Proof | None = None
 
 
 def outlined(
@@ -92,9 +103,9 @@ def outlined(
         after = cost(new, into)
         if same and after >= before:
             break
-        bound, failing = _proof(around, way, into)
+        bound, failing, proof = _proof(around, way, into)
         if bound <= tolerance:
-            return Outlined(new, bound, (before, after))
+            return Outlined(new, bound, (before, after), proof)
         for edge in way:
             if edge.controls is not None and ((failing >= edge.start) & (failing <= edge.stop)).any():
                 around.banned.add((edge.start, edge.stop))
@@ -114,8 +125,8 @@ def _controls(around: Around, edge: Edge) -> Array:
     return net[[0, -1]] if around.line[edge.start] else net
 
 
-def _proof(around: Around, way: list[Edge], cubic: bool) -> tuple[float, Array]:
-    """Return the proven distance of a way around, and where on the outline it is above the tolerance."""
+def _proof(around: Around, way: list[Edge], cubic: bool) -> tuple[float, Array, Proof]:
+    """Return the proven distance of a way around, where on the outline it is above the tolerance, and the proof."""
     nets: list[Array] = []
     u: list[float] = []
     s: list[float] = []
@@ -129,4 +140,4 @@ def _proof(around: Around, way: list[Edge], cubic: bool) -> tuple[float, Array]:
     given = 4 * ROUNDING * (sizes(f, False) + sizes(g, False))  # lines are raised
     scaled = Scaled(f, g, around.tolerance, given=given)
     U, S, failing = scaled.refined(np.array(u), np.array(s))
-    return float(scaled.bound(U, S)), np.floor(failing)
+    return float(scaled.bound(U, S)), np.floor(failing), Proof(g, U, S + around.start)
