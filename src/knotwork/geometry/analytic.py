@@ -8,13 +8,15 @@ parameter of a rational arc is not the angle.
 
 from __future__ import annotations
 
+import functools
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, all_finite
 from knotwork.errors import ParameterError
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -37,16 +39,17 @@ class Frame(NamedTuple):
         ParameterError
             If a direction has no length, or both are the same.
         """
-        z = _unit(np.array([0.0, 0.0, 1.0] if axis is None else axis, np.float64), "axis")
+        z = _unit((0.0, 0.0, 1.0) if axis is None else axis, "axis")
         if x is None:
-            x = [1.0, 0.0, 0.0] if abs(z[0]) < 1.0 else [0.0, 1.0, 0.0]
-        near = np.array(x, np.float64)
-        near = _unit(near - (near @ z) * z, "reference direction, without its part along the axis,")
-        return cls(np.array(origin, np.float64), near, np.cross(z, near), z)
+            x = (1.0, 0.0, 0.0) if abs(z[0]) < 1.0 else (0.0, 1.0, 0.0)
+        part = sum(a * b for a, b in zip(x, z, strict=True))
+        near = [a - part * b for a, b in zip(x, z, strict=True)]
+        near = _unit(near, "reference direction, without its part along the axis,")
+        return cls(np.array(origin, np.float64), np.array(near), _skew(z) @ near, np.array(z))
 
     def local(self, points: Array) -> Array:
         """Return the coordinates of points in this frame, shape (…, 3)."""
-        found: Array = (points - self.origin) @ np.stack([self.x, self.y, self.z], axis=1)
+        found: Array = (points - self.origin) @ np.array((self.x, self.y, self.z)).T
         return found
 
 
@@ -59,7 +62,7 @@ def line(p: Any, q: Any, start: float = 0.0, stop: float = 1.0) -> Spline:
     >>> analytic.line([0, 0], [4, 2])(0.5).tolist()
     [2.0, 1.0]
     """
-    return Spline(SplineSpace.bezier(1, [start, stop]), [p, q])
+    return _spline((_pieces(1, (start, stop)),), np.array([p, q]), False)
 
 
 def ellipse(center: Any, a: Any, b: Any, start: float = 0.0, stop: float = 2 * math.pi) -> Spline:
@@ -84,9 +87,8 @@ def ellipse(center: Any, a: Any, b: Any, start: float = 0.0, stop: float = 2 * m
     >>> circle.degree, circle.points.round(12).tolist()[:3]
     ((2,), [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     """
-    C, A, B = _vectors(center, a, b)
-    breaks, rows = _turn(start, stop)
-    return Spline(SplineSpace.bezier(2, breaks), np.column_stack([rows @ np.stack([A, B, C]), rows[:, 2]]), True)
+    breaks, rows = _turn(float(start), float(stop))
+    return _spline((_pieces(2, breaks),), _weighted(rows, np.array([a, b, center], np.float64)), True)
 
 
 def hyperbola(center: Any, a: Any, b: Any, start: float, stop: float) -> Spline:
@@ -97,16 +99,13 @@ def hyperbola(center: Any, a: Any, b: Any, start: float, stop: float) -> Spline:
     ParameterError
         If the interval is empty, or so long that a point overflows.
     """
-    C, A, B = _vectors(center, a, b)
     _require_interval(start, stop)
     m, h = (start + stop) / 2, (stop - start) / 2
     if max(abs(start), abs(stop)) > 300:
         raise ParameterError(f"a hyperbola from {start} to {stop} given; cosh overflows beyond 300")
-    ch = [math.cosh(u) for u in (start, m, stop)]
-    sh = [math.sinh(u) for u in (start, m, stop)]
-    rows = np.column_stack([ch, sh, [1.0, math.cosh(h), 1.0]])
-    points = np.column_stack([rows @ np.stack([A, B, C]), rows[:, 2]])
-    return Spline(SplineSpace.bezier(2, [start, stop]), points, True)
+    rows = np.array([[math.cosh(u), math.sinh(u), w] for u, w in ((start, 1.0), (m, math.cosh(h)), (stop, 1.0))])
+    net = _weighted(rows, np.array([a, b, center], np.float64))
+    return _spline((_pieces(2, (float(start), float(stop))),), net, True)
 
 
 def parabola(vertex: Any, a: Any, b: Any, start: Any, stop: Any) -> Spline:
@@ -182,19 +181,19 @@ def revolution(profile: Spline, origin: Any, axis: Any, start: float = 0.0, stop
     >>> cylinder.degree, cylinder.points.shape
     ((2, 1), (9, 2, 3))
     """
-    z = _unit(np.array(axis, np.float64), "axis")
-    breaks, rows = _turn(start, stop)
+    z = _unit(axis, "axis")
+    breaks, rows = _turn(float(start), float(stop))
     h = profile.homogeneous
     w = h[:, 3:]
-    O = np.array(origin, np.float64)
-    at = h[:, :3] - w * O
+    center = w * np.array(origin, np.float64)
+    at = h[:, :3] - center
     along = (at @ z)[:, None] * z
     across = at - along
-    turned = np.cross(z, across)
-    cos, sin, weight = (rows[:, i, None, None] for i in range(3))
-    points = cos * across + sin * turned + weight * (along + w * O)
-    net = np.concatenate([points, np.broadcast_to(weight * w, (*points.shape[:2], 1))], axis=2)
-    return Spline((SplineSpace.bezier(2, breaks), *profile.spaces), net, True)
+    parts = np.array((across, across @ _skew(z).T, along + center))  # multiplied by cosines, sines, and weights
+    net = np.empty((len(rows), len(h), 4))
+    net[..., :3] = (rows @ parts.reshape(3, -1)).reshape(len(rows), len(h), 3)
+    net[..., 3] = rows[:, 2:] * h[:, 3]
+    return _spline((_pieces(2, breaks), *profile.spaces), net, True)
 
 
 def extrusion(profile: Spline, direction: Any, start: float = 0.0, stop: float = 1.0) -> Spline:
@@ -207,17 +206,17 @@ def extrusion(profile: Spline, direction: Any, start: float = 0.0, stop: float =
     [1.0, 1.0, 0.0]
     """
     D = np.array(direction, np.float64)
-    space = SplineSpace.bezier(1, [start, stop])
-    c = profile.coefficients
-    w = profile.homogeneous[:, -1:]
-    moved = [c + np.column_stack([w * D * v, *([w * 0] if profile.rational else [])]) for v in (start, stop)]
-    return Spline((*profile.spaces, space), np.stack(moved, axis=1), profile.rational)
+    net = np.repeat(profile.coefficients[:, None], 2, axis=1)
+    for i, v in enumerate((start, stop)):
+        net[:, i, : len(D)] += profile.homogeneous[:, -1:] * D * v
+    return _spline((*profile.spaces, _pieces(1, (start, stop))), net, profile.rational)
 
 
 def plane(frame: Frame, u: Sequence[float], v: Sequence[float]) -> Spline:
     """Return the rectangle of the points origin + u · x + v · y, u and v between two numbers each."""
     O, x, y, _ = frame
-    return extrusion(line(O + u[0] * x, O + u[1] * x, *u), y, *v)
+    net = O + np.array(u)[:, None, None] * x + np.array(v)[:, None] * y
+    return _spline((_pieces(1, u), _pieces(1, v)), net, False)
 
 
 def cone(frame: Frame, radius: float, angle: float, u: Sequence[float], v: Sequence[float]) -> Spline:
@@ -233,28 +232,56 @@ def torus(frame: Frame, major: float, minor: float, u: Sequence[float], v: Seque
     return revolution(ellipse(O + major * x, minor * x, minor * z, *v), O, z, *u)
 
 
-def _turn(start: float, stop: float) -> tuple[Array, Array]:
+@functools.lru_cache(maxsize=64)
+def _turn(start: float, stop: float) -> tuple[list[float], Array]:
     """Return the angles where pieces of less than a third of a turn end, and (cos, sin, weight) of control points."""
     if not (math.isfinite(start) and math.isfinite(stop)) or not 0 < abs(stop - start) < 2 * math.pi * (1 + 1e-9):
         raise ParameterError(f"angles from {start} to {stop} given; expected an arc of at most one turn")
     pieces = math.ceil(abs(stop - start) / (math.pi / 2) * (1 - 1e-9))
-    angles = np.linspace(start, stop, 2 * pieces + 1)
-    weight = np.ones(len(angles))
-    weight[1::2] = math.cos((stop - start) / (2 * pieces))
-    breaks = angles[::2] if stop > start else 2 * start - angles[::2]
-    return breaks, np.column_stack([np.cos(angles), np.sin(angles), weight])
+    half = (stop - start) / (2 * pieces)
+    angles = [*(start + k * half for k in range(2 * pieces)), stop]
+    rows = np.array([[math.cos(u), math.sin(u), 1.0] for u in angles])
+    rows[1::2, 2] = math.cos(half)
+    rows.setflags(write=False)
+    return (angles if stop > start else [2 * start - u for u in angles])[::2], rows
 
 
-def _vectors(*given: Any) -> list[Array]:
-    return [np.array(each, np.float64) for each in given]
+def _weighted(rows: Array, vectors: Array) -> Array:
+    """Return the homogeneous points of a conic of vectors a, b and its center."""
+    net = np.empty((len(rows), vectors.shape[1] + 1))
+    net[:, :-1] = rows @ vectors
+    net[:, -1] = rows[:, 2]
+    return net
 
 
-def _unit(v: Array, what: str) -> Array:
+def _pieces(degree: int, breaks: Sequence[Any]) -> SplineSpace:
+    """Return the space of continuous pieces over breaks; floats that increase are not checked once more."""
+    plain = all(type(x) is float for x in breaks) and all(a < b for a, b in itertools.pairwise(breaks))
+    if not plain or not math.isfinite(breaks[-1] - breaks[0]):
+        return SplineSpace.bezier(degree, breaks)
+    knots = [breaks[0], *(x for x in breaks for _ in range(degree)), breaks[-1]]
+    return SplineSpace.trusted(degree, np.array(knots))
+
+
+def _spline(spaces: tuple[SplineSpace, ...], net: Array, rational: bool) -> Spline:
+    """Return the spline of control points that fit; floats need only be finite, as weights are positive here."""
+    if net.dtype != np.float64 or not all_finite(net) or any(space.exact for space in spaces):
+        return Spline(spaces, net, rational)
+    return Spline.trusted(spaces, net, rational)
+
+
+def _skew(z: Sequence[float]) -> Array:
+    """Return the matrix of the cross product with z from the left."""
+    return np.array([[0.0, -z[2], z[1]], [z[2], 0.0, -z[0]], [-z[1], z[0], 0.0]])
+
+
+def _unit(v: Any, what: str) -> list[float]:
     """Return a direction of length 1."""
-    size = float(np.linalg.norm(v))
+    given = [float(x) for x in v]
+    size = math.hypot(*given)
     if not (size > 0 and math.isfinite(size)):
-        raise ParameterError(f"{what} {v.tolist()} given; expected a direction")
-    return v / size
+        raise ParameterError(f"{what} {given} given; expected a direction")
+    return [x / size for x in given]
 
 
 def _require_interval(start: Any, stop: Any) -> None:

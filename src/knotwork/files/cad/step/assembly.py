@@ -141,8 +141,9 @@ class Reader:
         name = self._name(key)
         found: list[Shape] = []
         bounds: dict[int, list[int]] = defaultdict(list)
-        for face in faces:
-            for edge in self._face_edges(face):
+        around = {face: self._face_edges(face) for face in faces}
+        for face, edges_ in around.items():
+            for edge in edges_:
                 bounds[edge].append(face)
         for edge in dict.fromkeys([*bounds, *edges]):
             spline = self._edge(edge)
@@ -151,7 +152,7 @@ class Reader:
                 key_, own = self._own(self.text.record(edge)["EDGE_CURVE"][3])
                 found += self._copies(spline, edge, name, matrices, owners, key_, own)
         for face in faces:
-            found += self.remarks.attempt(f"#{face}", lambda face=face: self._face(face, name, matrices))  # type: ignore[misc]
+            found += self.remarks.attempt(f"#{face}", lambda face=face: self._face(face, around[face], name, matrices))  # type: ignore[misc]
         for each in loose:
             found += self.remarks.attempt(f"#{each}", lambda each=each: self._loose(each, name, matrices))  # type: ignore[misc]
         return found
@@ -204,10 +205,10 @@ class Reader:
             p, q = (self.geometry.vertex(v) for v in (first, last))
             return self.geometry.between(curve, End(None, p), End(None, q), same == ".T.")
 
-    def _face(self, key: int, name: str | None, matrices: list[Array]) -> list[Shape]:
+    def _face(self, key: int, edges: list[int], name: str | None, matrices: list[Array]) -> list[Shape]:
         with self.geometry.within(key) as record:
             surface = record[self.geometry.kind(key)][2]
-            hull = [s.points for s in (self._edge(e) for e in self._face_edges(key)) if s is not None]
+            hull = [s.points for s in map(self._edge, edges) if s is not None]
             points = np.concatenate(hull) if hull else np.concatenate([np.zeros((0, 3)), *self._corners(key)])
             spline = self.geometry.surface(surface, points)
         self.remarks.left_out("face(s) bound their surfaces; these are read whole, and the edges as curves", f"#{key}")

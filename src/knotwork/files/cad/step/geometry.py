@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,6 +39,57 @@ class End(NamedTuple):
     point: Array | None
 
 
+class Conic(NamedTuple):
+    """A circle, ellipse, hyperbola or parabola, and its sizes along the axes of its frame."""
+
+    kind: str
+    frame: Frame
+    a: float
+    b: float
+
+    def parameter(self, point: Array) -> float:
+        """Return the parameter of a point on it."""
+        d = point - self.frame.origin
+        x, y = float(d @ self.frame.x) / self.a, float(d @ self.frame.y) / self.b
+        if self.kind == "HYPERBOLA":
+            return math.asinh(y)
+        return y / 2 if self.kind == "PARABOLA" else math.atan2(y, x)
+
+    def arc(self, start: float, stop: float) -> Spline:
+        """Return the part between two parameters."""
+        O, x, y, _ = self.frame
+        if self.kind == "PARABOLA":
+            return analytic.parabola(O, self.a * x, 2 * self.a * y, start, stop)
+        make = analytic.hyperbola if self.kind == "HYPERBOLA" else analytic.ellipse
+        return make(O, self.a * x, self.b * y, start, stop)
+
+
+class _Within:
+    """While an entity is read: what it refers to cannot be itself."""
+
+    __slots__ = ("geometry", "key")
+
+    def __init__(self, geometry: Geometry, key: int) -> None:
+        self.geometry, self.key = geometry, key
+
+    def __enter__(self) -> dict[str, list[Any]]:
+        path, key = self.geometry.path, self.key
+        if (key in path and key != path[-1]) or len(path) > DEEP:
+            raise FileError(f"#{key} is a part of itself, or more than {DEEP} deep")
+        path.append(key)
+        try:
+            return self.geometry.text.record(key)
+        except BaseException:
+            path.pop()
+            raise
+
+    def __exit__(self, kind: type[BaseException] | None, exc: BaseException | None, trace: object) -> None:
+        self.geometry.path.pop()
+        if isinstance(exc, TypeError | ValueError | IndexError | KeyError | np.linalg.LinAlgError):
+            if not isinstance(exc, FileError):
+                raise FileError(f"#{self.key}: {exc}") from exc
+
+
 class Geometry:
     """Makes splines of entities."""
 
@@ -48,24 +97,14 @@ class Geometry:
         self.text = text
         #: how many radians the unit of angles is
         self.radians = radians
-        self._path: list[int] = []
+        #: the entities that are being read, each a part of the one before
+        self.path: list[int] = []
         #: the B-spline that was made last, which is often asked for again
         self._last: tuple[int, Spline] | None = None
 
-    @contextmanager
-    def within(self, key: int) -> Iterator[dict[str, list[Any]]]:
+    def within(self, key: int) -> _Within:
         """Read an entity, unless it is a part of itself; what is wrong with it is told with its number."""
-        if (key in self._path and key != self._path[-1]) or len(self._path) > DEEP:
-            raise FileError(f"#{key} is a part of itself, or more than {DEEP} deep")
-        self._path.append(key)
-        try:
-            yield self.text.record(key)
-        except FileError:
-            raise
-        except (TypeError, ValueError, IndexError, KeyError, np.linalg.LinAlgError) as exc:
-            raise FileError(f"#{key}: {exc}") from exc
-        finally:
-            self._path.pop()
+        return _Within(self, key)
 
     def kind(self, key: int) -> str:
         """Return what an entity is; of one made of several, the name that tells."""
@@ -83,8 +122,7 @@ class Geometry:
 
     def point(self, key: int) -> Array:
         """Return a point in space."""
-        found: Array = self.text.points([key])[0]
-        return found
+        return self.text.point_in_space(key)
 
     def vertex(self, key: int) -> Array:
         """Return the point of a vertex, or that of a point."""
@@ -126,7 +164,7 @@ class Geometry:
                 points = self.text.points(record[kind][1])
                 return [(key, Spline(SplineSpace.clamped(1, len(points)), points))]
             if kind in ("CIRCLE", "ELLIPSE"):
-                return [(key, self._conic(record, kind)(0.0, 2 * math.pi))]
+                return [(key, self._conic(record, kind).arc(0.0, 2 * math.pi))]
             if "CURVE" in kind and kind in CURVES:
                 return [(key, self.bspline(key))]
             raise FileError(f"#{key} is a {kind} without ends" if kind in CURVES else f"#{key}: {kind} is not read")
@@ -152,16 +190,15 @@ class Geometry:
             if kind in ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"):
                 return self.between(record[kind][1], first, last, True)
             if kind == "LINE":
-                p, v = self.point(record[kind][1]), self.vector(record[kind][2])
-                start_, stop_ = (p + (e.parameter or 0.0) * v if e.point is None else e.point for e in (first, last))
+                start_, stop_ = (self._on_line(record[kind], e) for e in (first, last))
                 return analytic.line(start_, stop_)
-            if kind in ("CIRCLE", "ELLIPSE"):
-                start, stop = (self._angle(record, kind, e) for e in (first, last))
+            if kind in ("CIRCLE", "ELLIPSE", "HYPERBOLA", "PARABOLA"):
+                conic = self._conic(record, kind)
+                start, stop = (self._on_conic(conic, e) for e in (first, last))
+                if kind in ("HYPERBOLA", "PARABOLA"):
+                    return conic.arc(min(start, stop), max(start, stop))
                 turn = math.remainder(stop - start, 2 * math.pi)
-                return self._conic(record, kind)(start, start + (turn if turn > 1e-12 else turn + 2 * math.pi))
-            if kind in ("HYPERBOLA", "PARABOLA"):
-                start, stop = (self._along(record, kind, e) for e in (first, last))
-                return self._conic(record, kind)(min(start, stop), max(start, stop))
+                return conic.arc(start, start + (turn if turn > 1e-12 else turn + 2 * math.pi))
             found = self.curve(key)
             if first.parameter is not None and last.parameter is not None:
                 a, b = found.space.domain
@@ -169,35 +206,26 @@ class Geometry:
                 return trim(found, first_, last_) if a <= first_ < last_ <= b else found
             return found
 
-    def _local(self, record: dict[str, list[Any]], kind: str, end: End) -> Array:
-        _, place, *sizes = record[kind]
-        if end.point is None:
-            raise FileError(f"a {kind} is cut at nothing; expected a parameter or a point")
-        at: Array = self.frame(place).local(end.point) / [float(sizes[0]), float(sizes[-1]), 1.0]
+    def _on_line(self, args: list[Any], end: End) -> Array:
+        if end.point is not None:
+            return end.point
+        at: Array = self.point(args[1]) + (end.parameter or 0.0) * self.vector(args[2])
         return at
 
-    def _angle(self, record: dict[str, list[Any]], kind: str, end: End) -> float:
+    def _on_conic(self, conic: Conic, end: End) -> float:
+        """Return the parameter of an end."""
         if end.parameter is not None:
-            return end.parameter * self.radians
-        x, y, _ = self._local(record, kind, end)
-        return math.atan2(y, x)
+            return end.parameter * (self.radians if conic.kind in ("CIRCLE", "ELLIPSE") else 1.0)
+        if end.point is None:
+            raise FileError(f"a {conic.kind} is cut at nothing; expected a parameter or a point")
+        return conic.parameter(end.point)
 
-    def _along(self, record: dict[str, list[Any]], kind: str, end: End) -> float:
-        if end.parameter is not None:
-            return end.parameter
-        y = float(self._local(record, kind, end)[1])
-        return math.asinh(y) if kind == "HYPERBOLA" else y / 2
-
-    def _conic(self, record: dict[str, list[Any]], kind: str) -> Callable[[float, float], Spline]:
+    def _conic(self, record: dict[str, list[Any]], kind: str) -> Conic:
         _, place, *sizes = record[kind]
-        O, x, y, _ = self.frame(place)
         a, b = float(sizes[0]), float(sizes[-1])
         if not (a > 0 and b > 0):
             raise FileError(f"a {kind} of size {a} and {b}; expected positive numbers")
-        if kind == "PARABOLA":
-            return lambda start, stop: analytic.parabola(O, a * x, 2 * a * y, start, stop)
-        make = analytic.hyperbola if kind == "HYPERBOLA" else analytic.ellipse
-        return lambda start, stop: make(O, a * x, b * y, start, stop)
+        return Conic(kind, self.frame(place), a, b)
 
     def bspline(self, key: int) -> Spline:
         """Return a B-spline curve or surface, as its entity says."""
@@ -254,8 +282,9 @@ class Geometry:
             if kind in ("PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE"):
                 if not len(hull):
                     raise FileError(f"#{key} is a {kind} without ends")
-                low, high = (f(frame.local(hull), axis=0) for f in (np.min, np.max))
-                return self._quadric(kind, frame, args[2:], [low[0], high[0]], [low[1], high[1]], [low[2], high[2]])
+                local = frame.local(hull)
+                low, high = local.min(axis=0).tolist(), local.max(axis=0).tolist()
+                return self._quadric(kind, frame, args[2:], *map(list, zip(low, high, strict=True)))
             return self._quadric(kind, frame, args[2:], [], [], [])
 
     def _quadric(

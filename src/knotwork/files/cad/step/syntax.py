@@ -17,13 +17,14 @@ _SPACE = r"(?>\s+|/\*(?>[^*]+|\*(?!/))*\*/)*+"
 _ENTITY = re.compile(
     _SPACE + r"(?:#(\d+)\s*=\s*(\w*)((?>[^';/]+|'[^']*'|/\*(?>[^*]+|\*(?!/))*\*/|/)*+);|(ENDSEC)\s*;|(\S|\Z))"
 )
-_TOKEN = re.compile(r"[^\s'(),/]+|[(),]|'(?:[^']|'')*+'|/\*(?>[^*]+|\*(?!/))*\*/|\S")
+_TOKEN = re.compile(r"[()]|[^()']+|'(?:[^']|'')*+'|'")
+_COMMENT = re.compile(r"'(?:[^']|'')*+'|/\*.*?\*/", re.DOTALL)
 _NUMBER = re.compile(r"[-+]?\d+(\.\d*)?([Ee][-+]?\d+)?")
-_OTHER = re.compile(r"(\.\w+\.)|([$*])|(!?[A-Za-z_]\w*)|(\"[0-9A-Fa-f]*\")|(/\*.*\*/)", re.DOTALL)
+_OTHER = re.compile(r"(\.\w+\.)|([$*])|(!?[A-Za-z_]\w*)|(\"[0-9A-Fa-f]*\")")
 _DATA = re.compile(r"\bDATA\s*(?:\([^;]*\))?\s*;")
 _REFERENCE = re.compile(r"#(\d+)")
 #: records that are kept
-RECENT = 64
+RECENT = 4096
 #: so many points are worth reading at once
 MANY = 1000
 #: lists may be nested so deep
@@ -69,12 +70,12 @@ class Text:
         self._starts += found.starts
         self._first += found.first
         self._last += found.last
-        codes = found.codes.tolist()
-        self._names += map(found.names.__getitem__, codes)
+        names = [name.upper() for name in found.names]
+        self._names += map(names.__getitem__, found.codes.tolist())
         order = np.argsort(found.codes, kind="stable")
         keys = np.array(found.keys)[order].tolist()
         edges = np.searchsorted(found.codes[order], np.arange(len(found.names) + 1)).tolist()
-        for name, (lo, hi) in zip(found.names, pairwise(edges), strict=True):
+        for name, (lo, hi) in zip(names, pairwise(edges), strict=True):
             self.named.setdefault(name, []).extend(keys[lo:hi])
         return found.end
 
@@ -92,10 +93,10 @@ class Text:
             key = int(number)
             self._rows[key] = len(self._starts)
             self._starts.append(found.start(1) - 1)
-            self._names.append(found[2])
+            self._names.append(found[2].upper())
             self._first.append(found.start(3))
             self._last.append(found.end(3))
-            self.named.setdefault(found[2], []).append(key)
+            self.named.setdefault(self._names[-1], []).append(key)
         return len(self.text)
 
     def _all_points(self) -> tuple[Array, dict[int, int]]:
@@ -139,7 +140,7 @@ class Text:
 
     def name(self, key: int) -> str:
         """Return the name of an entity; '' if it is made of several."""
-        return self.place(key)[0].upper()
+        return self.place(key)[0]
 
     def record(self, key: int) -> dict[str, list[Any]]:
         """Return the parameters of an entity by name: one name, or several."""
@@ -156,7 +157,7 @@ class Text:
         if name:
             if len(parsed) != 1 or type(parsed[0]) is not list:
                 raise FileError(f"line {self.line(a)}: #{key} has no list of parameters")
-            return {name.upper(): parsed[0]}
+            return {name: parsed[0]}
         inside = parsed[0] if len(parsed) == 1 and type(parsed[0]) is list else []
         return {part[0]: part[1] for part in inside if type(part) is tuple}
 
@@ -174,9 +175,15 @@ class Text:
         """Return points of space, shape (n, 3)."""
         every, rows = self._points
         try:
-            return every[[rows[key] for key in keys]]
+            return every[list(map(rows.__getitem__, keys))]
         except KeyError:  # few points, or not all plain ones
             return np.array([self._in_space(key) for key in keys]).reshape(-1, 3)
+
+    def point_in_space(self, key: int) -> Array:
+        """Return one point of space."""
+        every, rows = self._points
+        row = rows.get(key)
+        return every[row] if row is not None else np.array(self._in_space(key))
 
     def _in_space(self, key: int) -> list[float]:
         p = self.point(key)
@@ -186,47 +193,58 @@ class Text:
 
     def _parsed(self, key: int, at: int, end: int) -> list[Any]:
         """Return the values between two places: lists, numbers, texts; a name before a list makes a pair of them."""
+        text = self.text[at:end]
+        if "/*" in text:  # blanks in its place, so that lines stay
+            text = _COMMENT.sub(lambda m: m[0] if m[0][0] == "'" else re.sub(r"\S", " ", m[0]), text)
         top: list[Any] = []
         stack = [top]
-        for k, word in enumerate(_TOKEN.findall(self.text, at, end)):
-            mark = word[0]
-            if mark == ",":
-                continue
-            if mark == "#" and word[1:].isdecimal():
-                top.append(Ref(word[1:]))
-            elif mark == "(":
+        for k, token in enumerate(_TOKEN.findall(text)):
+            mark = token[0]
+            if mark == "(":
                 if len(stack) > DEEP:
-                    raise FileError(f"{self._token(at, end, k)}: lists are nested more than {DEEP} deep")
+                    raise FileError(f"{self._line_of(text, at, k)}: lists are nested more than {DEEP} deep")
                 top = []
                 stack.append(top)
             elif mark == ")":
                 if len(stack) < 2:
-                    raise FileError(f"{self._token(at, end, k)}: #{key} has a ) too many")
+                    raise FileError(f"{self._line_of(text, at, k)}: #{key} has a ) too many")
                 inner, top = stack.pop(), stack[-1]
                 if top and type(top[-1]) is _Name:
                     top[-1] = (str(top[-1]).upper(), inner)
                 else:
                     top.append(inner)
-            elif mark == "'" and len(word) > 1:
-                top.append(word[1:-1])
-            elif number := _NUMBER.fullmatch(word):
-                whole = number[1] is None and number[2] is None and len(word) < 30
-                top.append(int(word) if whole else float(word))
-            elif other := _OTHER.fullmatch(word):
-                if other[1] or other[2]:
-                    top.append(other[1])
-                elif other[3]:
-                    top.append(_Name(word))
+            elif mark == "'" and len(token) > 1:
+                top.append(token[1:-1])
             else:
-                raise FileError(f"{self._token(at, end, k)}: {word[:40]!r} in #{key} makes no sense")
+                for word in token.split(","):
+                    word = word.strip()
+                    if word and not _take(word, top):
+                        raise FileError(f"{self._line_of(text, at, k)}: {word[:40]!r} in #{key} makes no sense")
         if len(stack) > 1:
             raise FileError(f"line {self.line(at)}: #{key} has a ( that is not closed")
         return top
 
-    def _token(self, at: int, end: int, k: int) -> str:
+    def _line_of(self, text: str, at: int, k: int) -> str:
         """Return in which line a token stands."""
-        found = next(islice(_TOKEN.finditer(self.text, at, end), k, None))
-        return f"line {self.line(found.start())}"
+        found = next(islice(_TOKEN.finditer(text), k, None))
+        return f"line {self.line(at + found.end())}"
+
+
+def _take(word: str, top: list[Any]) -> bool:
+    """Append what a word means to a list; tell whether it means something."""
+    if word[0] == "#" and word[1:].isdecimal():
+        top.append(Ref(word[1:]))
+    elif number := _NUMBER.fullmatch(word):
+        whole = number[1] is None and number[2] is None and len(word) < 30
+        top.append(int(word) if whole else float(word))
+    elif other := _OTHER.fullmatch(word):
+        if other[1] or other[2]:
+            top.append(other[1])
+        elif other[3]:
+            top.append(_Name(word))
+    else:
+        return False
+    return True
 
 
 class _Name(str):
