@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
-from knotwork.errors import FileError, KnotworkError
+from knotwork.arithmetic.arrays import Array, require_finite
+from knotwork.errors import FileError, KnotworkError, PointError
 from knotwork.files.places import Place
 from knotwork.insertion import clamp
 from knotwork.spline import Spline
@@ -129,7 +129,20 @@ def spline_of(spaces: Any, points: Array, weights: Array | None) -> Spline:
 
 def moved(spline: Spline, matrix: Array | None) -> Spline:
     """Return a spline mapped by a matrix of shape (3, 4); as it is, if that is None."""
-    return spline if matrix is None else spline.transform(matrix[:, :3], matrix[:, 3])
+    if matrix is None:
+        return spline
+    given = spline.coefficients
+    if given.dtype != np.float64 or spline.dim != 3:
+        return spline.transform(matrix[:, :3], matrix[:, 3])
+    net = np.empty(given.shape)
+    np.matmul(given[..., :3], matrix[:, :3].T, out=net[..., :3])
+    if spline.rational:
+        net[..., 3] = given[..., 3]
+        net[..., :3] += given[..., 3:] * matrix[:, 3]
+    else:
+        net += matrix[:, 3]
+    require_finite(net, "placed points", PointError)
+    return Spline.trusted(spline.spaces, net, spline.rational)
 
 
 def magnification(matrix: Array | None) -> float:

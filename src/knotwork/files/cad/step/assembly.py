@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.cad.shapes import Remarks, Shape, magnification, moved
-from knotwork.files.cad.step.geometry import CURVES, SURFACES, End, Geometry
+from knotwork.files.cad.step.geometry import CURVES, ON_SURFACES, SURFACES, End, Geometry
 from knotwork.files.cad.step.syntax import Ref, Text
 from knotwork.files.places import Place
 from knotwork.geometry.analytic import Frame
@@ -30,8 +30,13 @@ FACES = ("ADVANCED_FACE", "FACE_SURFACE")
 COPIES = 100_000
 _PREFIX = {".MILLI.": "m", ".CENTI.": "c", ".KILO.": "k", ".MICRO.": "µ", ".DECI.": "d", None: ""}
 _NAMED = {"INCH": "in", "INCHES": "in", "IN": "in", "FOOT": "ft", "FEET": "ft", "FT": "ft"}
-#: the identity, shape (3, 4)
-HERE = np.eye(3, 4)
+
+
+class Move(NamedTuple):
+    """Where something is placed: a matrix of shape (3, 4), or None for where it is; and by how much it stretches."""
+
+    matrix: Array | None
+    scale: float
 
 
 class Reader:
@@ -49,17 +54,17 @@ class Reader:
         """Return the shapes of all representations, or loose geometry if there are none."""
         items, copies = self._representations()
         used = 0
-        for key, matrices in copies.items():
+        for key, moves in copies.items():
             for item in items[key]:
-                yield from self.remarks.attempt(f"#{item}", lambda item=item, m=matrices: self._item(item, m))  # type: ignore[misc]
-                used += len(matrices)
+                yield from self.remarks.attempt(f"#{item}", lambda item=item, m=moves: self._item(item, m))  # type: ignore[misc]
+                used += len(moves)
                 if used > COPIES:
                     raise FileError(f"more than {COPIES} placed copies of shapes")
 
     # ---- where representations stand -----------------------------------------------------------------------------
 
-    def _representations(self) -> tuple[dict[int, list[int]], dict[int, list[Array]]]:
-        """Return the items of each representation, and the matrices by which it is placed."""
+    def _representations(self) -> tuple[dict[int, list[int]], dict[int, list[Move]]]:
+        """Return the items of each representation, and where it is placed."""
         items: dict[int, list[int]] = {}
         for name, keys in self.text.named.items():
             if name.upper().endswith("SHAPE_REPRESENTATION"):  # not those of parameters, colours, properties
@@ -89,21 +94,21 @@ class Reader:
             origin, mapped = self.text.record(source)["REPRESENTATION_MAP"]
             if owner is not None:
                 parents[mapped].append((owner, self._between(origin, target)))
-        found: dict[int, list[Array]] = {}
+        found: dict[int, list[Move]] = {}
         groups = _groups(set(items) | set(same), same)
         for key in items:
-            found[key] = self._placed(key, groups, parents, found_depth=0)
+            found[key] = [Move(m, magnification(m)) for m in self._placed(key, groups, parents, found_depth=0)]
         return items, found
 
     def _placed(
         self, key: int, groups: dict[int, list[int]], parents: dict[int, list[tuple[int, Array]]], found_depth: int
-    ) -> list[Array]:
+    ) -> list[Array | None]:
         if found_depth > 30:
             raise FileError(f"representation #{key} is a part of itself, or more than 30 deep")
         ways = [way for each in groups.get(key, [key]) for way in parents.get(each, [])]
         if not ways:
-            return [HERE]
-        found = []
+            return [None]
+        found: list[Array | None] = []
         for parent, matrix in ways:
             for outer in self._placed(parent, groups, parents, found_depth + 1):
                 found.append(_after(outer, matrix))
@@ -135,7 +140,7 @@ class Reader:
 
     # ---- items -----------------------------------------------------------------------------------------------------
 
-    def _item(self, key: int, matrices: list[Array]) -> list[Shape]:
+    def _item(self, key: int, moves: list[Move]) -> list[Shape]:
         """Return the shapes of one item: first its edges, then its faces and loose geometry."""
         faces, edges, loose = self._walk(key)
         name = self._name(key)
@@ -149,12 +154,12 @@ class Reader:
             spline = self._edge(edge)
             if spline is not None:
                 owners = f", an edge of {', '.join(f'#{f}' for f in bounds[edge])}" if bounds[edge] else ""
-                key_, own = self._own(self.text.record(edge)["EDGE_CURVE"][3])
-                found += self._copies(spline, edge, name, matrices, owners, key_, own)
+                key_, own = self._own(self.text.references(edge)[-1])
+                found += self._copies(spline, edge, name, moves, owners, key_, own)
         for face in faces:
-            found += self.remarks.attempt(f"#{face}", lambda face=face: self._face(face, around[face], name, matrices))  # type: ignore[misc]
+            found += self.remarks.attempt(f"#{face}", lambda face=face: self._face(face, around[face], name, moves))  # type: ignore[misc]
         for each in loose:
-            found += self.remarks.attempt(f"#{each}", lambda each=each: self._loose(each, name, matrices))  # type: ignore[misc]
+            found += self.remarks.attempt(f"#{each}", lambda each=each: self._loose(each, name, moves))  # type: ignore[misc]
         return found
 
     def _walk(self, key: int) -> tuple[list[int], list[int], list[int]]:
@@ -182,13 +187,14 @@ class Reader:
         return list(faces), list(edges), list(loose)
 
     def _face_edges(self, face: int) -> list[int]:
+        """Return the edges around a face; a face is a name, its bounds, its surface, and which side is out."""
         found: list[int] = []
         try:
-            for bound in self.text.record(face)[self.geometry.kind(face)][1]:
-                loop = next(iter(self.text.record(bound).values()))[1]
+            for bound in self.text.references(face)[:-1]:
+                loop = self.text.references(bound)[0]
                 if self.text.name(loop) == "EDGE_LOOP":
-                    found += [self.text.record(e)["ORIENTED_EDGE"][3] for e in self.text.record(loop)["EDGE_LOOP"][1]]
-        except (TypeError, IndexError, KeyError) as exc:
+                    found += [self.text.references(edge)[-1] for edge in self.text.references(loop)]
+        except IndexError as exc:
             raise FileError(f"#{face} has bounds that make no sense") from exc
         return found
 
@@ -202,10 +208,10 @@ class Reader:
     def _make_edge(self, key: int) -> Spline:
         with self.geometry.within(key) as record:
             _, first, last, curve, same = record["EDGE_CURVE"]
-            p, q = (self.geometry.vertex(v) for v in (first, last))
+            p, q = self.geometry.vertex(first), self.geometry.vertex(last)
             return self.geometry.between(curve, End(None, p), End(None, q), same == ".T.")
 
-    def _face(self, key: int, edges: list[int], name: str | None, matrices: list[Array]) -> list[Shape]:
+    def _face(self, key: int, edges: list[int], name: str | None, moves: list[Move]) -> list[Shape]:
         with self.geometry.within(key) as record:
             surface = record[self.geometry.kind(key)][2]
             hull = [s.points for s in map(self._edge, edges) if s is not None]
@@ -213,7 +219,7 @@ class Reader:
             spline = self.geometry.surface(surface, points)
         self.remarks.left_out("face(s) bound their surfaces; these are read whole, and the edges as curves", f"#{key}")
         entity, own = self._own(surface)
-        return self._copies(spline, key, name, matrices, "", entity, own)
+        return self._copies(spline, key, name, moves, "", entity, own)
 
     def _corners(self, face: int) -> list[Array]:
         found = []
@@ -223,39 +229,36 @@ class Reader:
                 found.append(np.array([self.geometry.point(p) for p in self.text.record(loop)["POLY_LOOP"][1]]))
         return found
 
-    def _loose(self, key: int, name: str | None, matrices: list[Array]) -> list[Shape]:
+    def _loose(self, key: int, name: str | None, moves: list[Move]) -> list[Shape]:
         if self.geometry.kind(key) in SURFACES:
             spline = self.geometry.surface(key, np.zeros((0, 3)))
-            return self._copies(spline, key, name, matrices, "", *self._own(key))
+            return self._copies(spline, key, name, moves, "", *self._own(key))
         found = []
         for basis, spline in self.geometry.curves(key):
-            found += self._copies(spline, basis, name, matrices, "", *self._own(basis))
+            found += self._copies(spline, basis, name, moves, "", *self._own(basis))
         return found
 
     def _own(self, key: int) -> tuple[int | None, Spline | None]:
         """Return the B-spline that an entity is, or leads to, and its number."""
         kind = self.geometry.kind(key)
-        if kind in ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"):
-            return self._own(self.text.record(key)[kind][1])
+        if kind in ON_SURFACES:
+            return self._own(self.text.references(key)[0])
         if kind in ("B_SPLINE_CURVE_WITH_KNOTS", "B_SPLINE_SURFACE_WITH_KNOTS"):
             return key, self.geometry.bspline(key)
         return None, None
 
     def _copies(
-        self, spline: Spline, key: int, name: str | None, matrices: list[Array], more: str, entity: int | None,
+        self, spline: Spline, key: int, name: str | None, moves: list[Move], more: str, entity: int | None,
         own: Spline | None,
     ) -> list[Shape]:  # fmt: skip
         where = f"#{key}" if entity in (None, key) else f"#{entity} of #{key}"
         layer = self.layers.get(key)
         place = Place(self._name(key) or name, layer, units=self.units, where=where + more)
-        return [
-            Shape(spline if m is HERE else moved(spline, m), place, entity, own, 1.0 if m is HERE else magnification(m))
-            for m in matrices
-        ]
+        return [Shape(moved(spline, m.matrix), place, entity, own, m.scale) for m in moves]
 
     def _name(self, key: int) -> str | None:
-        args: list[Any] = next(iter(self.text.record(key).values()), [])
-        return args[0].strip() or None if args and isinstance(args[0], str) and args[0].strip(" .") else None
+        name = self.text.label(key)
+        return name if name and name.strip(" .") else None
 
     def _layers(self) -> dict[int, str]:
         found: dict[int, str] = {}
@@ -318,7 +321,7 @@ def _axes(frame: Frame) -> Array:
     return np.column_stack([frame.x, frame.y, frame.z])
 
 
-def _after(outer: Array, inner: Array) -> Array:
-    if outer is HERE:
+def _after(outer: Array | None, inner: Array) -> Array:
+    if outer is None:
         return inner
     return np.column_stack([outer[:, :3] @ inner[:, :3], outer[:, :3] @ inner[:, 3] + outer[:, 3]])

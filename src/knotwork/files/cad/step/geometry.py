@@ -19,10 +19,12 @@ from knotwork.spline import Spline
 
 #: entities may refer to each other so deep
 DEEP = 40
+#: curves of space that also tell their pictures on surfaces
+ON_SURFACES = {"SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"}
 CURVES = {
     "LINE", "CIRCLE", "ELLIPSE", "HYPERBOLA", "PARABOLA", "POLYLINE", "TRIMMED_CURVE", "COMPOSITE_CURVE",
     "B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE", "UNIFORM_CURVE", "QUASI_UNIFORM_CURVE",
-    "SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE",
+    *ON_SURFACES,
 }  # fmt: skip
 SURFACES = {
     "PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE",
@@ -127,7 +129,7 @@ class Geometry:
     def vertex(self, key: int) -> Array:
         """Return the point of a vertex, or that of a point."""
         if self.text.name(key) == "VERTEX_POINT":
-            key = self.text.record(key)["VERTEX_POINT"][1]
+            key = self.text.references(key)[-1]
         return self.point(key)
 
     def frame(self, key: int) -> Frame:
@@ -155,7 +157,7 @@ class Geometry:
             if kind == "COMPOSITE_CURVE":
                 parts = [self.text.record(part)["COMPOSITE_CURVE_SEGMENT"][2] for part in record[kind][1]]
                 return [found for part in parts for found in self.curves(part)]
-            if kind in ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"):
+            if kind in ON_SURFACES:
                 return self.curves(record[kind][1])
             if kind == "TRIMMED_CURVE":
                 _, basis, first, last, same, *_ = record[kind]
@@ -185,9 +187,11 @@ class Geometry:
         """Return the part of a curve between two ends, in the direction of the curve."""
         if not same:
             first, last = last, first
+        if first.point is not None and last.point is not None and self.text.name(key) == "LINE":
+            return analytic.line(first.point, last.point)
         with self.within(key) as record:
             kind = self.kind(key)
-            if kind in ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"):
+            if kind in ON_SURFACES:
                 return self.between(record[kind][1], first, last, True)
             if kind == "LINE":
                 start_, stop_ = (self._on_line(record[kind], e) for e in (first, last))

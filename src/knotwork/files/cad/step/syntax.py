@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 import re
+from collections.abc import Iterator
 from itertools import islice, pairwise
 from typing import Any
 
@@ -23,6 +25,8 @@ _NUMBER = re.compile(r"[-+]?\d+(\.\d*)?([Ee][-+]?\d+)?")
 _OTHER = re.compile(r"(\.\w+\.)|([$*])|(!?[A-Za-z_]\w*)|(\"[0-9A-Fa-f]*\")")
 _DATA = re.compile(r"\bDATA\s*(?:\([^;]*\))?\s*;")
 _REFERENCE = re.compile(r"#(\d+)")
+_TEXT_OR_REFERENCE = re.compile(r"'(?:[^']|'')*+'|#(\d+)")
+_FIRST_TEXT = re.compile(r"\s*+\(\s*+'((?:[^']|'')*+)'")
 #: records that are kept
 RECENT = 4096
 #: so many points are worth reading at once
@@ -130,13 +134,15 @@ class Text:
         return max(self._rows)
 
     def several(self, *names: str) -> list[int]:
-        """Return the entities made of several whose text has one of these names."""
-        found = []
-        for key in self.named.get("", []):
-            _, a, b = self.place(key)
-            if any(self.text.find(name, a, b) >= 0 for name in names):
-                found.append(key)
-        return found
+        """Return the entities made of several whose text has one of these names, in their order."""
+        rows: dict[int, None] = {}
+        keys = self.named.get("", [])
+        starts = [self.start(key) for key in keys]
+        for found in re.finditer("|".join(names), self.text) if keys else ():
+            i = bisect.bisect_right(starts, found.start()) - 1
+            if i >= 0 and i not in rows and found.start() < self.place(keys[i])[2]:
+                rows[i] = None
+        return [keys[i] for i in rows]
 
     def name(self, key: int) -> str:
         """Return the name of an entity; '' if it is made of several."""
@@ -160,6 +166,19 @@ class Text:
             return {name: parsed[0]}
         inside = parsed[0] if len(parsed) == 1 and type(parsed[0]) is list else []
         return {part[0]: part[1] for part in inside if type(part) is tuple}
+
+    def references(self, key: int) -> list[int]:
+        """Return the entities that the parameters of one refer to, in their order, the quick way."""
+        _, a, b = self.place(key)
+        if self.text.find("/*", a, b) >= 0:
+            return list(_references(self._parsed(key, a, b)))
+        return [int(x) for x in _TEXT_OR_REFERENCE.findall(self.text, a, b) if x]
+
+    def label(self, key: int) -> str | None:
+        """Return the text that is the first parameter of an entity, the quick way; None if there is none."""
+        _, a, b = self.place(key)
+        found = _FIRST_TEXT.match(self.text, a, b)
+        return found[1].strip() or None if found else None
 
     def point(self, key: int) -> list[float]:
         """Return the coordinates of a point or a direction, the quick way."""
@@ -253,6 +272,15 @@ class _Name(str):
     __slots__ = ()
 
 
+def _references(values: list[Any]) -> Iterator[int]:
+    """Yield the numbers of entities in lists of lists."""
+    for each in values:
+        if type(each) is Ref:
+            yield each
+        elif type(each) in (list, tuple):
+            yield from _references(list(each))
+
+
 def references(text: str) -> list[int]:
-    """Return the numbers of all entities that a text refers to."""
+    """Return the numbers of all entities that a text refers to, or may refer to."""
     return [int(x) for x in _REFERENCE.findall(text)]
