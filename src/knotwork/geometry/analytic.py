@@ -21,6 +21,9 @@ from knotwork.errors import ParameterError
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
+#: the space of a line that is one piece
+_UNIT = SplineSpace.bezier(1, [0.0, 1.0])
+
 
 class Frame(NamedTuple):
     """Where something stands: a point and three directions, orthogonal and of length 1; each of shape (3,)."""
@@ -259,6 +262,8 @@ def _pieces(degree: int, breaks: Sequence[Any]) -> SplineSpace:
     plain = all(type(x) is float for x in breaks) and all(a < b for a, b in itertools.pairwise(breaks))
     if not plain or not math.isfinite(breaks[-1] - breaks[0]):
         return SplineSpace.bezier(degree, breaks)
+    if degree == 1 and breaks == (0.0, 1.0):
+        return _UNIT
     knots = [breaks[0], *(x for x in breaks for _ in range(degree)), breaks[-1]]
     return SplineSpace.trusted(degree, np.array(knots))
 

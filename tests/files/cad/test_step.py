@@ -238,3 +238,15 @@ def test_many_points_are_read_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
         found.points([1, 2])
     with pytest.raises(FileError, match="#9 is referred to, but not there"):
         found.points([9])
+
+
+def test_words_that_look_like_others_in_comments_and_texts() -> None:
+    """What stands in comments is no entity, and what stands in texts is neither an entity nor a parenthesis."""
+    plain = [(s.spaces, s.coefficients.tolist()) for s in step.decode(file(CYLINDER), lambda _: None)]
+    assert len(plain) == 3
+    commented = re.sub(r"(?<=[,(])(?=#)", "/* #999, ( and 'it's */", CYLINDER)
+    named = CYLINDER.replace("('',", "('#999 (it''s; .T.',")
+    spread = re.sub(r"([,()])", r" \1\n\t", CYLINDER)
+    for text in (commented, named, spread):
+        found = step.decode(file(text), lambda _: None)
+        assert [(s.spaces, s.coefficients.tolist()) for s in found] == plain

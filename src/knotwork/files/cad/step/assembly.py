@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.cad.shapes import Remarks, Shape, magnification, moved
-from knotwork.files.cad.step.geometry import CURVES, ON_SURFACES, SURFACES, End, Geometry
+from knotwork.files.cad.step.geometry import CURVES, SURFACES, End, Geometry
 from knotwork.files.cad.step.syntax import Ref, Text
 from knotwork.files.places import Place
 from knotwork.geometry.analytic import Frame
@@ -206,14 +206,14 @@ class Reader:
         return self._edges[key]
 
     def _make_edge(self, key: int) -> Spline:
-        with self.geometry.within(key) as record:
-            _, first, last, curve, same = record["EDGE_CURVE"]
+        with self.geometry.within(key):
+            first, last, curve = self.text.references(key)
             p, q = self.geometry.vertex(first), self.geometry.vertex(last)
-            return self.geometry.between(curve, End(None, p), End(None, q), same == ".T.")
+            return self.geometry.between(curve, End(None, p), End(None, q), self.text.last_word(key) == ".T.")
 
     def _face(self, key: int, edges: list[int], name: str | None, moves: list[Move]) -> list[Shape]:
-        with self.geometry.within(key) as record:
-            surface = record[self.geometry.kind(key)][2]
+        with self.geometry.within(key):
+            surface = self.text.references(key)[-1]
             hull = [s.points for s in map(self._edge, edges) if s is not None]
             points = np.concatenate(hull) if hull else np.concatenate([np.zeros((0, 3)), *self._corners(key)])
             spline = self.geometry.surface(surface, points)
@@ -240,9 +240,8 @@ class Reader:
 
     def _own(self, key: int) -> tuple[int | None, Spline | None]:
         """Return the B-spline that an entity is, or leads to, and its number."""
+        key = self.geometry.in_space(key)
         kind = self.geometry.kind(key)
-        if kind in ON_SURFACES:
-            return self._own(self.text.references(key)[0])
         if kind in ("B_SPLINE_CURVE_WITH_KNOTS", "B_SPLINE_SURFACE_WITH_KNOTS"):
             return key, self.geometry.bspline(key)
         return None, None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,8 @@ from knotwork.insertion import trim
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
+#: what is raised where an entity does not hold what it should
+_NONSENSE = (TypeError, ValueError, IndexError, KeyError, np.linalg.LinAlgError)
 #: entities may refer to each other so deep
 DEEP = 40
 #: curves of space that also tell their pictures on surfaces
@@ -74,22 +77,16 @@ class _Within:
     def __init__(self, geometry: Geometry, key: int) -> None:
         self.geometry, self.key = geometry, key
 
-    def __enter__(self) -> dict[str, list[Any]]:
+    def __enter__(self) -> None:
         path, key = self.geometry.path, self.key
         if (key in path and key != path[-1]) or len(path) > DEEP:
             raise FileError(f"#{key} is a part of itself, or more than {DEEP} deep")
         path.append(key)
-        try:
-            return self.geometry.text.record(key)
-        except BaseException:
-            path.pop()
-            raise
 
     def __exit__(self, kind: type[BaseException] | None, exc: BaseException | None, trace: object) -> None:
         self.geometry.path.pop()
-        if isinstance(exc, TypeError | ValueError | IndexError | KeyError | np.linalg.LinAlgError):
-            if not isinstance(exc, FileError):
-                raise FileError(f"#{self.key}: {exc}") from exc
+        if isinstance(exc, _NONSENSE) and not isinstance(exc, FileError):
+            raise FileError(f"#{self.key}: {exc}") from exc
 
 
 class Geometry:
@@ -105,7 +102,7 @@ class Geometry:
         self._last: tuple[int, Spline] | None = None
 
     def within(self, key: int) -> _Within:
-        """Read an entity, unless it is a part of itself; what is wrong with it is told with its number."""
+        """Within, an entity is read that is no part of itself; what is wrong with it is told with its number."""
         return _Within(self, key)
 
     def kind(self, key: int) -> str:
@@ -119,6 +116,14 @@ class Geometry:
         if "B_SPLINE_SURFACE" in names:
             return "B_SPLINE_SURFACE_WITH_KNOTS"
         return next(iter(names), "")
+
+    def in_space(self, key: int) -> int:
+        """Return the curve in space that a curve is which also tells its pictures on surfaces."""
+        for _ in range(DEEP):
+            if self.text.name(key) not in ON_SURFACES:
+                return key
+            key = self.text.references(key)[0]
+        raise FileError(f"#{key} is a part of itself, or more than {DEEP} deep")
 
     # ---- points and frames ---------------------------------------------------------------------------------------
 
@@ -134,13 +139,17 @@ class Geometry:
 
     def frame(self, key: int) -> Frame:
         """Return a placement."""
-        with self.within(key) as record:
-            ((_, (_, origin, *axes)),) = record.items()
+        with self.within(key):
+            given: Sequence[Any] = self.text.references(key)
+            if len(given) != 3:  # an axis is left to be chosen
+                ((_, (_, *given)),) = self.text.record(key).items()
+            origin, *axes = given
             return Frame.at(self.point(origin), *(None if a is None else self.text.point(a) for a in axes))
 
     def vector(self, key: int) -> Array:
         """Return a vector, or a direction."""
-        with self.within(key) as record:
+        with self.within(key):
+            record = self.text.record(key)
             if "VECTOR" not in record:
                 return self.point(key)
             _, direction, size = record["VECTOR"]
@@ -152,13 +161,13 @@ class Geometry:
 
     def curves(self, key: int) -> list[tuple[int, Spline]]:
         """Return a curve that ends by itself; one that is made of several as those."""
-        with self.within(key) as record:
+        key = self.in_space(key)
+        with self.within(key):
+            record = self.text.record(key)
             kind = self.kind(key)
             if kind == "COMPOSITE_CURVE":
                 parts = [self.text.record(part)["COMPOSITE_CURVE_SEGMENT"][2] for part in record[kind][1]]
                 return [found for part in parts for found in self.curves(part)]
-            if kind in ON_SURFACES:
-                return self.curves(record[kind][1])
             if kind == "TRIMMED_CURVE":
                 _, basis, first, last, same, *_ = record[kind]
                 return [(basis, self.between(basis, self._end(first), self._end(last), same == ".T."))]
@@ -187,12 +196,12 @@ class Geometry:
         """Return the part of a curve between two ends, in the direction of the curve."""
         if not same:
             first, last = last, first
+        key = self.in_space(key)
         if first.point is not None and last.point is not None and self.text.name(key) == "LINE":
             return analytic.line(first.point, last.point)
-        with self.within(key) as record:
+        with self.within(key):
+            record = self.text.record(key)
             kind = self.kind(key)
-            if kind in ON_SURFACES:
-                return self.between(record[kind][1], first, last, True)
             if kind == "LINE":
                 start_, stop_ = (self._on_line(record[kind], e) for e in (first, last))
                 return analytic.line(start_, stop_)
@@ -238,7 +247,8 @@ class Geometry:
         return self._last[1]
 
     def _bspline(self, key: int) -> Spline:
-        with self.within(key) as record:
+        with self.within(key):
+            record = self.text.record(key)
             names = set(record)
             surface = any("SURFACE" in name for name in names)
             k, stem = (2, "SURFACE") if surface else (1, "CURVE")
@@ -269,7 +279,8 @@ class Geometry:
 
     def surface(self, key: int, hull: Array) -> Spline:
         """Return a surface: one without ends as large as the points of its boundary need."""
-        with self.within(key) as record:
+        with self.within(key):
+            record = self.text.record(key)
             kind = self.kind(key)
             if "B_SPLINE" in kind or kind in ("BEZIER_SURFACE", "UNIFORM_SURFACE", "QUASI_UNIFORM_SURFACE"):
                 return self.bspline(key)
@@ -322,7 +333,8 @@ class Geometry:
         return analytic.extrusion(curve, direction, far.min() - near.max(), far.max() - near.min())
 
     def _turned(self, profile: int, axis: int, hull: Array) -> Spline:
-        with self.within(axis) as record:
+        with self.within(axis):
+            record = self.text.record(axis)
             _, origin, direction = record["AXIS1_PLACEMENT"]
             O, z = self.point(origin), self.point(direction) if direction is not None else np.array([0.0, 0, 1])
         if self.kind(profile) == "LINE":
@@ -336,7 +348,8 @@ class Geometry:
 
     def _trimmed(self, basis: int, *ends: float) -> Spline:
         u, v = sorted(map(float, ends[:2])), sorted(map(float, ends[2:]))
-        with self.within(basis) as record:
+        with self.within(basis):
+            record = self.text.record(basis)
             kind = self.kind(basis)
             if "B_SPLINE" in kind:
                 found = self.bspline(basis)

@@ -47,6 +47,7 @@ class Text:
         if "ISO-10303-21" not in self.text[:2000]:
             raise FileError("there is no ISO-10303-21 at the start; expected a STEP file")
         self._data = data
+        self._comments = b"/*" in data
         #: for each entity its row in the lists below
         self._rows: dict[int, int] = {}
         #: where each begins, its name ('' if it is made of several), and where its parameters stand
@@ -135,18 +136,22 @@ class Text:
 
     def several(self, *names: str) -> list[int]:
         """Return the entities made of several whose text has one of these names, in their order."""
-        rows: dict[int, None] = {}
         keys = self.named.get("", [])
         starts = [self.start(key) for key in keys]
-        for found in re.finditer("|".join(names), self.text) if keys else ():
-            i = bisect.bisect_right(starts, found.start()) - 1
-            if i >= 0 and i not in rows and found.start() < self.place(keys[i])[2]:
-                rows[i] = None
-        return [keys[i] for i in rows]
+        rows = set()
+        for name in names if keys else ():
+            at = self.text.find(name)
+            while at >= 0:
+                i = bisect.bisect_right(starts, at) - 1
+                if i >= 0 and at < self.place(keys[i])[2]:
+                    rows.add(i)
+                at = self.text.find(name, at + 1)
+        return [keys[i] for i in sorted(rows)]
 
     def name(self, key: int) -> str:
         """Return the name of an entity; '' if it is made of several."""
-        return self.place(key)[0]
+        row = self._rows.get(key)
+        return self._names[row] if row is not None else self.place(key)[0]
 
     def record(self, key: int) -> dict[str, list[Any]]:
         """Return the parameters of an entity by name: one name, or several."""
@@ -170,7 +175,7 @@ class Text:
     def references(self, key: int) -> list[int]:
         """Return the entities that the parameters of one refer to, in their order, the quick way."""
         _, a, b = self.place(key)
-        if self.text.find("/*", a, b) >= 0:
+        if self._comments and self.text.find("/*", a, b) >= 0:
             return list(_references(self._parsed(key, a, b)))
         return [int(x) for x in _TEXT_OR_REFERENCE.findall(self.text, a, b) if x]
 
@@ -179,6 +184,11 @@ class Text:
         _, a, b = self.place(key)
         found = _FIRST_TEXT.match(self.text, a, b)
         return found[1].strip() or None if found else None
+
+    def last_word(self, key: int) -> str:
+        """Return the last parameter of an entity, the quick way, if that is one word."""
+        _, a, b = self.place(key)
+        return self.text[max(a, b - 80) : b].rpartition(",")[2].strip(" \r\n\t)")
 
     def point(self, key: int) -> list[float]:
         """Return the coordinates of a point or a direction, the quick way."""
