@@ -63,12 +63,15 @@ def patch(old: dict[str, Any] | None, new: dict[str, Any]) -> dict[str, Any]:
 def _splice(old: Array, new: Array) -> tuple[int, int, Array]:
     """Return where two arrays begin to differ, how many rows of the old one go, and which come."""
     least = min(len(old), len(new))
-    a, b = old.reshape(len(old), -1), new.reshape(len(new), -1)
-    head = (a[:least] != b[:least]).any(axis=1)
-    start = int(np.argmax(head)) if head.any() else least
-    tail = (a[len(a) - least :] != b[len(b) - least :]).any(axis=1)[::-1]
-    end = min(int(np.argmax(tail)) if tail.any() else least, least - start)
+    start = _same(old[:least], new[:least])
+    end = _same(old[len(old) - least + start :][::-1], new[len(new) - least + start :][::-1])
     return start, len(old) - end - start, new[start : len(new) - end]
+
+
+def _same(a: Array, b: Array) -> int:
+    """Return how many rows are the same before the first that differs."""
+    differ = (a != b).ravel()
+    return int(differ.argmax()) * len(a) // len(differ) if differ.any() else len(a)
 
 
 def rounded(values: Array) -> list[Any]:

@@ -119,13 +119,13 @@ export function element(name, attributes, text) {
  * @param {App["camera"]} camera @param {number[][]} points
  */
 function path(camera, points) {
-  const { width: w, height: h } = camera, last = points.length - 1;
-  let d = "", pen = "M", [px, py] = [NaN, NaN];
-  /** @type {[number, number]} */
-  let before = [0, 0];
+  const { scale, width: w, height: h } = camera, last = points.length - 1;
+  const ox = w / 2 - camera.x * scale, oy = h / 2 + camera.y * scale;
+  let d = "", pen = "M", px = NaN, py = NaN, x = 0, y = 0;
   for (let i = 0; i <= last; i++) {
-    const p = camera.toScreen(points[i]), [x, y] = p, [bx, by] = before;
-    before = p;
+    const bx = x, by = y;
+    x = ox + points[i][0] * scale;
+    y = oy - points[i][1] * scale;
     if (!i || Math.max(x, bx) < 0 || Math.min(x, bx) > w || Math.max(y, by) < 0 || Math.min(y, by) > h) {
       if (i && pen === "L") d += `L${bx.toFixed(1)} ${by.toFixed(1)}`;
       pen = "M";
@@ -135,7 +135,8 @@ function path(camera, points) {
     if (pen === "L" && i < last && Math.abs(x - px) < FINE && Math.abs(y - py) < FINE) continue;
     d += `L${x.toFixed(1)} ${y.toFixed(1)}`;
     pen = "L";
-    [px, py] = p;
+    px = x;
+    py = y;
   }
   return d;
 }
@@ -183,9 +184,10 @@ function marks(app) {
 function inSight(camera, points) {
   /** @type {number[]} */
   const seen = [];
+  const [left, bottom] = camera.toPlane(-20, camera.height + 20), [right, top] = camera.toPlane(camera.width + 20, -20);
   for (let k = 0; k < points.length && seen.length <= HANDLES; k++) {
-    const [x, y] = camera.toScreen(points[k]);
-    if (x > -20 && y > -20 && x < camera.width + 20 && y < camera.height + 20) seen.push(k);
+    const p = points[k];
+    if (p[0] > left && p[0] < right && p[1] > bottom && p[1] < top) seen.push(k);
   }
   return seen.length <= HANDLES ? seen : [];
 }
