@@ -1,6 +1,7 @@
 """How many curves a second `batch` reduces, and in how much memory: tracks of 30 points as rows of Parquet.
 
-python benchmarks/bulk.py --curves 100000 --workers 2
+python benchmarks/bulk.py --curves 100000 --workers 2           # make bench-batch
+python benchmarks/bulk.py --curves 1000000 --form bezier
 """
 
 from __future__ import annotations
@@ -43,11 +44,12 @@ if __name__ == "__main__":
     parser.add_argument("--curves", type=int, default=100_000)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--tolerance", type=float, default=0.01)
+    parser.add_argument("--form", choices=("bezier", "polyline"), help="only this one")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "tracks.parquet"
         write(path, given.curves)
-        for form in ("bezier", "polyline"):
+        for form in (given.form,) if given.form else ("bezier", "polyline"):
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             start = time.monotonic()
             done = kw.batch(

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import PointError
 from knotwork.geometry.lengths import increasing, linear
 from knotwork.insertion import to_bezier
@@ -14,14 +15,29 @@ from knotwork.spline import Spline
 
 def polyline(points: Any, ring: bool) -> Spline:
     """Return the curve of degree 1 through points, over their lengths; a ring is closed if it has three or more."""
-    points = np.asarray(points, np.float64)
-    moves = np.append(True, (points[1:] != points[:-1]).any(axis=1))
-    points = points[moves]
-    if len(points) < 2:
-        raise PointError("a line of one place given; expected two or more different points")
-    closed = ring and len(points) > 3
-    t = increasing(np.hypot.reduce(points[1:] - points[:-1], axis=1), closed)
-    return linear(points, t, closed)
+    return Rows(np.asarray(points, np.float64)).polyline(0, len(points), ring)
+
+
+class Rows:
+    """Many rows of points one behind the other, whose steps are measured at once."""
+
+    def __init__(self, points: Array) -> None:
+        self.points = points
+        self.finite = np.isfinite(points).all(axis=1)
+        with np.errstate(invalid="ignore", over="ignore"):
+            steps = points[1:] - points[:-1]
+            self.lengths = np.hypot.reduce(steps, axis=1)
+        self.moves = (points[1:] != points[:-1]).any(axis=1)
+
+    def polyline(self, lo: int, hi: int, ring: bool) -> Spline:
+        """Return the curve through the points lo … hi − 1."""
+        points, lengths, moves = self.points[lo:hi], self.lengths[lo : hi - 1], self.moves[lo : hi - 1]
+        if np.count_nonzero(moves) < len(moves):
+            points, lengths = points[np.append(True, moves)], lengths[moves]
+        if len(points) < 2:
+            raise PointError("a line of one place given; expected two or more different points")
+        closed = ring and len(points) > 3
+        return linear(points, increasing(lengths, closed), closed)
 
 
 def corners(spline: Spline) -> Any:

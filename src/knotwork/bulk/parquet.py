@@ -16,7 +16,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.bridges import from_shapely
-from knotwork.bridges.lines import polyline
+from knotwork.bridges.lines import Rows
 from knotwork.bulk.curves import told
 from knotwork.errors import FileError, KnotworkError, MissingExtraError
 from knotwork.space import SplineSpace
@@ -120,13 +120,13 @@ def _is_list(kind: Any) -> bool:
     return bool(types.is_list(kind) or types.is_large_list(kind) or types.is_fixed_size_list(kind))
 
 
-def _curve(points: Array) -> Row:
+def _curve(rows: Rows, lo: int, hi: int) -> Row:
     """Return the polyline through points: closed, if it ends where it began."""
-    finite = np.isfinite(points).all(axis=1)
-    if not finite.all():
+    finite = rows.finite[lo:hi]
+    if np.count_nonzero(finite) < hi - lo:
         return f"point {int(np.argmin(finite))} is not finite"
     try:
-        return [polyline(points, len(points) > 3 and bool((points[0] == points[-1]).all()))]
+        return [rows.polyline(lo, hi, hi - lo > 3 and rows.points[lo].tolist() == rows.points[hi - 1].tolist())]
     except KnotworkError as exc:
         return told(exc)
 
@@ -148,15 +148,19 @@ def _from_points(column: Any) -> list[Row]:
     points, ends, there = _lists(column)
     numbers, at, known = _lists(points)
     values = np.asarray(numbers.cast("float64").fill_null(np.nan))
+    sizes = np.diff(at)
+    width = int(sizes[0]) if len(sizes) and sizes[0] > 0 and known.all() and (sizes == sizes[0]).all() else 0
+    every = Rows(values[at[0] : at[-1]].reshape(-1, width)) if width else None
     found: list[Row] = []
     for i, (lo, hi) in enumerate(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)):
-        sizes = np.diff(at[lo : hi + 1])
         if not there[i] or hi - lo < 2:
             found.append("fewer than two points")
-        elif not known[lo:hi].all() or not sizes[0] or (sizes != sizes[0]).any():
+        elif every is not None:
+            found.append(_curve(every, lo, hi))
+        elif not known[lo:hi].all() or not sizes[lo] or (sizes[lo:hi] != sizes[lo]).any():
             found.append("points of different lengths")
         else:
-            found.append(_curve(values[at[lo] : at[hi]].reshape(hi - lo, sizes[0])))
+            found.append(_curve(Rows(values[at[lo] : at[hi]].reshape(hi - lo, sizes[lo])), 0, hi - lo))
     return found
 
 
@@ -173,7 +177,8 @@ def _from_axes(table: Any, axes: tuple[str, ...]) -> list[Row]:
         if not all(there[i] for *_, there in lists) or len({len(x) for x in own}) > 1:
             found.append(f"{', '.join(axes)} of different lengths: {', '.join(str(len(x)) for x in own)}")
         else:
-            found.append(_curve(np.column_stack(own)) if len(own[0]) > 1 else "fewer than two points")
+            few = len(own[0]) < 2
+            found.append("fewer than two points" if few else _curve(Rows(np.column_stack(own)), 0, len(own[0])))
     return found
 
 

@@ -25,8 +25,9 @@ def increasing(lengths: Array, closed: bool = False, start: float = 0.0) -> Arra
         if closed:
             lengths = np.maximum(lengths, SHORTEST * lengths.sum())
         np.cumsum(lengths, out=t[1:])
-        t = start + t
-    if not math.isfinite(t[-1]) or (t[1:] > t[:-1]).all():
+        if start:
+            t += start
+    if not math.isfinite(t.item(-1)) or np.count_nonzero(t[1:] > t[:-1]) == len(lengths):
         return t
     for i in np.flatnonzero(t[1:] <= t[:-1]) + 1:
         while i < len(t) and t[i] <= t[i - 1]:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, KnotworkError, MissingExtraError
-from knotwork.files.cad.shapes import Remarks, Shape, in_space, plain
+from knotwork.files.cad.shapes import Model, Remarks, Shape, in_space, model, plain
 from knotwork.files.places import Place
 from knotwork.insertion import clamp
 from knotwork.space import SplineSpace
@@ -21,6 +22,13 @@ from knotwork.spline import Spline
 
 #: what carries neither curves nor surfaces, and need not be told
 SILENT = {"Point", "PointCloud", "TextDot", "Light"}
+
+
+#: names of units of length
+UNITS = {
+    "Microns": "µm", "Millimeters": "mm", "Centimeters": "cm", "Decimeters": "dm", "Meters": "m", "Kilometers": "km",
+    "Inches": "in", "Feet": "ft", "Yards": "yd", "Miles": "mi",
+}  # fmt: skip
 
 
 def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
@@ -33,22 +41,60 @@ def decode(data: bytes, remark: Callable[[str], None]) -> list[Spline]:
     MissingExtraError
         If rhino3dm is not installed.
     """
-    if not data.startswith(b"3D Geometry File Format"):
-        raise FileError("there is no '3D Geometry File Format' at the start; expected a 3DM file")
-    remarks = Remarks(remark)
-    try:
-        model = _rhino().File3dm.FromByteArray(data)
-    except (RuntimeError, ValueError) as exc:
-        raise FileError(f"this file cannot be read: {exc}") from exc
-    if model is None:
-        raise FileError("this file cannot be read: it is damaged")
-    found: list[Spline] = []
-    for i, each in enumerate(model.Objects):
-        where = f"object {i}" + (f" {each.Attributes.Name!r}" if each.Attributes.Name else "")
-        shapes = remarks.attempt(where, lambda e=each, w=where: _sound(e.Geometry, w, remarks))  # type: ignore[misc]
-        found += [shape.spline for shape in shapes]
+    return [shape.spline for shape in _read(data, remark)]
+
+
+def opened(data: bytes, remark: Callable[[str], None]) -> Model:
+    """Return the objects; those that are one B-spline can be replaced."""
+    return model(data, _read(data, remark), partial(rewrite, data))
+
+
+def rewrite(data: bytes, new: dict[int, Spline]) -> bytes:
+    """Return a file with the geometry of some objects replaced, given by their places among the objects.
+
+    Attributes, identities, order, tables and all other objects are as they were, but rhino3dm writes all of it anew.
+    """
+    rhino, file = _rhino(), _model(data)
+    objects = [(each.Geometry.Duplicate(), each.Attributes) for each in file.Objects]
+    for _, attributes in objects:
+        file.Objects.Delete(attributes.Id)
+    for i, (geometry, attributes) in enumerate(objects):
+        made = _made(rhino, new[i]) if i in new else geometry
+        if i in new:
+            for key, value in geometry.GetUserStrings():
+                made.SetUserString(key, value)
+        if file.Objects.Add(made, attributes) != attributes.Id:
+            raise FileError(f"rhino3dm cannot write object {i}, a {type(geometry).__name__}, again")
+    options = rhino.File3dmWriteOptions()
+    options.Version = file.ArchiveVersion // 10
+    return base64.b64decode(file.Encode(options))
+
+
+def _read(data: bytes, remark: Callable[[str], None]) -> list[Shape]:
+    remarks, file = Remarks(remark), _model(data)
+    unit = UNITS.get(str(file.Settings.ModelUnitSystem).rpartition(".")[2])
+    layers = [layer.FullPath or layer.Name or None for layer in file.Layers]
+    found: list[Shape] = []
+    for i, each in enumerate(file.Objects):
+        name, layer = each.Attributes.Name or None, each.Attributes.LayerIndex
+        where = f"object {i}" + (f" {name!r}" if name else "")
+        place = Place(name, layers[layer] if 0 <= layer < len(layers) else None, units=unit, where=where)
+        found += remarks.attempt(where, lambda e=each, p=place, i=i: _sound(e.Geometry, p, i, remarks))  # type: ignore[misc]
     remarks.close()
     return found
+
+
+def _model(data: bytes) -> Any:
+    """Return what rhino3dm makes of a file."""
+    if not data.startswith(b"3D Geometry File Format"):
+        raise FileError("there is no '3D Geometry File Format' at the start; expected a 3DM file")
+    try:
+        file = _rhino().File3dm.FromByteArray(data)
+    except (RuntimeError, ValueError) as exc:
+        raise FileError(f"this file cannot be read: {exc}") from exc
+    if file is None:
+        raise FileError("this file cannot be read: it is damaged")
+    return file
 
 
 def _rhino() -> Any:
@@ -59,30 +105,33 @@ def _rhino() -> Any:
     return rhino3dm
 
 
-def _sound(geometry: Any, where: str, remarks: Remarks) -> list[Shape]:
+def _sound(geometry: Any, place: Place, number: int, remarks: Remarks) -> list[Shape]:
     """Return the shapes of an object; rhino3dm tells damage by errors of many kinds."""
     try:
-        return list(_shapes(geometry, where, remarks))
+        return list(_shapes(geometry, place, number, remarks))
     except KnotworkError:
         raise
     except (ValueError, TypeError, IndexError, RuntimeError, AttributeError) as exc:
         raise FileError(f"rhino3dm cannot tell what it is: {exc}") from exc
 
 
-def _shapes(geometry: Any, where: str, remarks: Remarks) -> Iterator[Shape]:
-    rhino, place = _rhino(), Place(where=where)
-    if isinstance(geometry, rhino.Brep):
+def _shapes(geometry: Any, place: Place, number: int, remarks: Remarks) -> Iterator[Shape]:
+    rhino = _rhino()
+    if isinstance(geometry, rhino.NurbsCurve | rhino.NurbsSurface):
+        own = _curve(geometry) if isinstance(geometry, rhino.NurbsCurve) else _surface(geometry)
+        yield Shape(own, place, number, own)
+    elif isinstance(geometry, rhino.Brep):
         for k in range(len(geometry.Edges)):
             yield Shape(_curve(geometry.Edges[k].ToNurbsCurve()), place)
         for k in range(len(geometry.Faces)):
             yield Shape(_surface(geometry.Faces[k].UnderlyingSurface().ToNurbsSurface()), place)
-        remarks.left_out("solid(s) bound their surfaces; these are read whole, and the edges as curves", where)
+        remarks.left_out("solid(s) bound their surfaces; these are read whole, and the edges as curves", place.where)
     elif isinstance(geometry, rhino.Surface):
         yield Shape(_surface(geometry.ToNurbsSurface()), place)
     elif isinstance(geometry, rhino.Curve):
         yield Shape(_curve(geometry.ToNurbsCurve()), place)
     elif type(geometry).__name__ not in SILENT:
-        remarks.left_out(f"{type(geometry).__name__} left out", where)
+        remarks.left_out(f"{type(geometry).__name__} left out", place.where)
 
 
 def _curve(c: Any) -> Spline:
@@ -117,19 +166,20 @@ def encode(splines: list[Spline], accuracy: float | None) -> tuple[bytes, float]
         If rhino3dm is not installed.
     """
     rhino = _rhino()
-    model = rhino.File3dm()
+    file = rhino.File3dm()
     for i, given in enumerate(splines):
-        spline = clamp(plain(given, f"splines[{i}]"))
-        c = spline.coefficients
-        w = c[..., -1:] if spline.rational else np.ones((*c.shape[:-1], 1))
-        points = np.concatenate([in_space(c[..., : spline.dim]), w], axis=-1)
-        add = model.Objects.AddCurve if spline.parameters == 1 else model.Objects.AddSurface
-        add(_made(rhino, spline, points))
-    return base64.b64decode(model.Encode()), 0.0
+        spline = plain(given, f"splines[{i}]")
+        add = file.Objects.AddCurve if spline.parameters == 1 else file.Objects.AddSurface
+        add(_made(rhino, spline))
+    return base64.b64decode(file.Encode()), 0.0
 
 
-def _made(rhino: Any, spline: Spline, points: Array) -> Any:
-    """Return a spline as an object of rhino3dm."""
+def _made(rhino: Any, given: Spline) -> Any:
+    """Return a spline as an object of rhino3dm, clamped."""
+    spline = clamp(given)
+    c = spline.coefficients
+    w = c[..., -1:] if spline.rational else np.ones((*c.shape[:-1], 1))
+    points = np.concatenate([in_space(c[..., : spline.dim]), w], axis=-1)
     orders, counts = [s.order for s in spline.spaces], [s.dimension for s in spline.spaces]
     if spline.parameters == 1:
         made = rhino.NurbsCurve(3, spline.rational, orders[0], counts[0])
