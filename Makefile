@@ -9,7 +9,7 @@ SAMPLE ?= 300
 # Random results of each kind that `make check-removal` and `make check-geometry` work out again.
 NUMBER ?= 1000
 
-.PHONY: help demo book docs test slow thorough bounds lint bench bench-fonts bench-files pictures-files bench-removal check-removal check-geometry methods crossovers accuracy clean
+.PHONY: help demo book docs test slow thorough bounds lint bench bench-batch bench-fonts bench-files pictures-files bench-removal check-removal check-geometry methods crossovers accuracy clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' Makefile
@@ -43,6 +43,9 @@ lint: .venv/linted  ## ruff check, ruff format --check, mypy --strict src
 
 bench: .venv/tested  ## race this library and the peers that are installed
 	$(BIN)/python benchmarks/peers.py
+
+bench-batch: .venv/tested  ## how many tracks a second `batch` reduces, and in how much memory
+	$(BIN)/python benchmarks/bulk.py
 
 bench-fonts: .venv/tested  ## points of glyphs beside cu2qu and qu2cu
 	$(BIN)/python benchmarks/fonts.py

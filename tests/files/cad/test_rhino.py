@@ -65,15 +65,15 @@ def test_a_solid_gives_its_edges_and_faces() -> None:
 
 def told_of(model: Any) -> list[Any]:
     """Return all that a file says about its objects but their geometry, and what its tables hold."""
+    attributes = [o.Attributes for o in model.Objects]
     objects = [
-        (o.Attributes.Id, type(o.Geometry).__name__, o.Attributes.Name, o.Attributes.LayerIndex, o.Attributes.ObjectColor,
-         o.Attributes.GetGroupList(), o.Attributes.GetUserStrings(), o.Geometry.GetUserStrings(), o.Attributes.Mode)
-        for o in model.Objects
-    ]  # fmt: skip
+        (a.Id, a.Name, a.LayerIndex, a.ObjectColor, a.GetGroupList(), a.GetUserStrings(), a.Mode) for a in attributes
+    ]
+    shapes = [(type(o.Geometry).__name__, o.Geometry.GetUserStrings()) for o in model.Objects]
     blocks = [(d.Id, d.Name, d.GetObjectIds()) for d in model.InstanceDefinitions]
     tables = [[(t.Id, t.Name) for t in table] for table in (model.Layers, model.Groups, model.Materials)]
     colours = [layer.Color for layer in model.Layers]
-    return [objects, blocks, tables, colours, model.Settings.ModelUnitSystem, model.ArchiveVersion]
+    return [objects, shapes, blocks, tables, colours, model.Settings.ModelUnitSystem, model.ArchiveVersion]
 
 
 def crowded() -> bytes:
