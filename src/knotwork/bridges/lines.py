@@ -23,7 +23,7 @@ class Rows:
 
     def __init__(self, points: Array) -> None:
         self.points = points
-        self.finite: Array = np.isfinite(points).all(axis=1)
+        self.finite: Array = np.logical_and.reduce(np.isfinite(points), axis=1)
         with np.errstate(invalid="ignore", over="ignore"):
             steps = points[1:] - points[:-1]
             self.lengths = np.hypot.reduce(steps, axis=1)
