@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -27,6 +28,10 @@ class Pen(NamedTuple):
     smooth: str = ""
 
 
+#: floats below this are finer than whole numbers
+FINE = 2.0**52
+#: texts of numbers that are remembered, at most
+KNOWN = 1 << 15
 #: before anything is written
 START = Pen((0, 0), "", "")
 
@@ -39,6 +44,11 @@ class Encoder:
 
     def __init__(self, digits: int | None) -> None:
         self.digits = digits
+        #: returns the shortest text of a number of units
+        self.number: Callable[[Any], str] = shortest_float if digits is None else _known(digits).__getitem__
+        #: how many units one is, and the whole numbers that units are divided and multiplied by
+        self.unit = 1.0 if digits is None else 10.0**digits
+        self.parts, self.whole = 10 ** max(digits or 0, 0), 10 ** max(-(digits or 0), 0)
         #: whether coordinates may be relative: both ways, or never
         self.ways = (False,) if digits is None else (True, False)
 
@@ -117,7 +127,9 @@ class Encoder:
                 values = [points[0][1] - dy]
             else:
                 values = [v for x, y in points for v in (x - dx, y - dy)]
-            numbers = [self.number(v) for v in values]
+            numbers = list(map(self.number, values))
+            if best[1] and sum(map(len, numbers)) >= len(best[0]):
+                continue
             text = separated(numbers, pen.last) if command == pen.command else command + separated(numbers)
             if not best[1] or len(text) < len(best[0]):
                 best = (text, command, numbers[-1])
@@ -127,21 +139,35 @@ class Encoder:
         """Return a point in units of the last digit."""
         if self.digits is None:
             return point
-        return _scaled(point[0], self.digits), _scaled(point[1], self.digits)
+        x, y = point
+        if abs(x) < FINE and abs(y) < FINE:
+            return round(x * self.unit), round(y * self.unit)
+        return _scaled(x, self.digits), _scaled(y, self.digits)
 
     def value(self, n: Any) -> float:
         """Return the float that a reader takes a number of units for."""
-        digits = self.digits
-        if digits is None:
-            return float(n)
-        return float(n / 10**digits if digits > 0 else n * 10**-digits)  # a quotient of integers is rounded once
-
-    def number(self, n: Any) -> str:
-        """Return the shortest text of a number of units."""
-        return shortest_float(n) if self.digits is None else _decimal(n, self.digits)
+        return float(n * self.whole / self.parts)  # a quotient of integers is rounded once
 
 
-@functools.lru_cache(1 << 15)  # small drawings have few numbers
+class _Texts(dict[int, str]):
+    """The texts of numbers of units of so many digits after the point, as they are asked for."""
+
+    def __init__(self, digits: int) -> None:
+        self.digits = digits
+
+    def __missing__(self, n: int) -> str:
+        if len(self) >= KNOWN:
+            self.clear()
+        text = self[n] = _decimal(n, self.digits)
+        return text
+
+
+@functools.lru_cache(64)
+def _known(digits: int) -> _Texts:
+    """Return the texts that are known: drawings have few numbers, and the same ones."""
+    return _Texts(digits)
+
+
 def _decimal(n: int, digits: int) -> str:
     """Return the shortest text of n units of so many digits after the point."""
     sign, text = ("-", str(-n)) if n < 0 else ("", str(n))
@@ -158,14 +184,15 @@ def _decimal(n: int, digits: int) -> str:
 
 def _scaled(x: float, digits: int) -> int:
     """Return a whole number near x · 10^digits: the nearest, but where floats cannot tell."""
-    return round(x * 10.0**digits) if abs(x) < 2.0**52 else round(Fraction(x) * Fraction(10) ** digits)
+    return round(x * 10.0**digits) if abs(x) < FINE else round(Fraction(x) * Fraction(10) ** digits)
 
 
 def separated(numbers: list[str], last: str = "") -> str:
     """Return numbers in a row after another one, parted only where a reader would take two for one."""
     text = []
     for number in numbers:
-        if last and number[0] != "-" and not (number[0] == "." and ("." in last or "e" in last)):
+        first = number[0]
+        if last and first != "-" and not (first == "." and ("." in last or "e" in last)):
             text.append(" ")
         text.append(number)
         last = number

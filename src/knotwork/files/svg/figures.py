@@ -142,7 +142,7 @@ class _Figures:
                 continue
             made = new.get(i) if way is not given else None
             starts = _starts(way, outline, i) if made else _starts_of(given)
-            read = outlined(as_written(way, written.encoder))
+            (read,) = outlined([as_written(way, written.encoder)])
             nets, segments = (read.nets, read.segments) if read else (self.drawing.nets[i][:0], np.zeros(0, int))
             standing = made.made.standing if made and made.made else self.as_given[i].standing
             spans = [range(starts[k], max(starts[k + 1], starts[k] + 1)) for k in segments.tolist()]
@@ -165,7 +165,7 @@ def _starts(way: Subpath, outline: Outline, i: int) -> list[int]:
 
 def _starts_of(given: Subpath) -> list[int]:
     """Return with which piece of a given curve each segment begins; a segment may have none."""
-    read = outlined(given)
+    (read,) = outlined([given])
     segments = read.segments if read else np.zeros(0, int)
     starts: list[int] = np.searchsorted(segments, np.arange(len(given.segments) + 1)).tolist()
     return starts

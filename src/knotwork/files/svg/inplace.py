@@ -101,13 +101,13 @@ class Drawing:
 
     def extent(self) -> float:
         """Return the longest side of the box around all that is drawn, up to the rounding of floats."""
-        drawn = [(self.nets[i], at) for k, at in self.maps for i in self.outlines[k].splines if i >= 0]
-        if not drawn:
+        wide: dict[tuple[int, Affine], list[Array]] = defaultdict(list)  # pieces of a degree under a map, all at once
+        for nets, at in ((self.nets[i], at) for k, at in self.maps for i in self.outlines[k].splines if i >= 0):
+            wide[nets.shape[1], at].append(nets)
+        if not wide:
             return 0.0
-        wide: dict[int, list[Array]] = defaultdict(list)  # pieces of a degree, all at once
-        for nets, at in drawn:
-            wide[nets.shape[1]].append(mapped(nets, at))
-        low, high = zip(*(reach(np.concatenate(nets)) for nets in wide.values()), strict=True)
+        found = (reach(mapped(np.concatenate(nets), at)) for (_, at), nets in wide.items())
+        low, high = zip(*found, strict=True)
         return float((np.max(high, axis=0) - np.min(low, axis=0)).max())
 
     def rewritten(
@@ -189,15 +189,16 @@ def opened(data: bytes, remark: Callable[[str], None], *, name: str | None = Non
     splines: list[Spline] = []
     nets: list[Array] = []
     places: list[Place] = []
-    for key, (element, at) in once.items():
-        subpaths = drawn.outline(element, at)
+    paths = [drawn.outline(element, at) for element, at in once.values()]
+    every = iter(outlined([subpath for some in paths for subpath in some]))
+    for (key, (element, at)), subpaths in zip(once.items(), paths, strict=True):
         declared = drawn.styles.declared(element, "d")
         corners = element.tag in ("polyline", "polygon")
         stands = span(data, element, "points" if corners else "d") if element.tag == "path" or corners else None
         stands = None if declared else stands
         indices, arcs = [], {}
         for number, subpath in enumerate(subpaths):
-            found = outlined(subpath)
+            found = next(every)
             indices.append(len(splines) if found else -1)
             if not found:
                 continue
@@ -236,7 +237,8 @@ def _animated(element: Element) -> bool:
 
 def _scale(place: Affine) -> float:
     """Return the largest factor by which a map of the plane stretches a length."""
-    return float(np.linalg.norm(np.array([[place[0], place[2]], [place[1], place[3]]]), 2))
+    a, b, c, d = place[:4]
+    return math.hypot(a + d, b - c) / 2 + math.hypot(a - d, b + c) / 2
 
 
 def _text(outline: Outline, changed: Mapping[int, Spline], allowed: list[float], longer: bool) -> Written:

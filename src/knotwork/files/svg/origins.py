@@ -31,7 +31,7 @@ def origin(text: str, box: Box) -> tuple[float, float]:
 
 def box_of(paths: list[Subpath]) -> tuple[float, float, float, float] | None:
     """Return the box of outlines as x, y, width, height; None if they go nowhere."""
-    found = [reach(each.nets) for each in map(outlined, paths) if each]
+    found = [reach(each.nets) for each in outlined(paths) if each]
     if not found:
         return None
     low, high = np.min([a for a, _ in found], axis=0), np.max([b for _, b in found], axis=0)

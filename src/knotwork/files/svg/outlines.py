@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -37,39 +39,57 @@ class Outlined(NamedTuple):
 
 def curves(paths: list[Subpath], place: Affine) -> list[Spline]:
     """Return the curve of each subpath under a map of the plane; one that goes nowhere is no curve."""
-    found = [outlined(path, place) for path in paths]
-    return [each.curve for each in found if each is not None]
+    return [each.curve for each in outlined(paths, place) if each is not None]
 
 
 @np.errstate(over="ignore", invalid="ignore")
-def outlined(path: Subpath, place: Affine = IDENTITY) -> Outlined | None:
-    """Return a subpath under a map of the plane; None if it goes nowhere."""
-    pieces, arcs, owners = _going_somewhere(path)
-    if not pieces:
-        return None
-    segments = np.array(owners)
-    nets = mapped(_nets(pieces), place)
-    if not np.isfinite(nets).all():
-        raise FileError("the outline reaches beyond float64")
-    steps = np.hypot(*(nets[:, 1:] - nets[:, :-1]).T).T
-    polygon = steps.sum(axis=1)
-    if not polygon.all():  # of a piece so short that its length is lost
-        nets, segments, polygon, arcs = nets[polygon > 0], segments[polygon > 0], polygon[polygon > 0], []
+def outlined(paths: Sequence[Subpath], place: Affine = IDENTITY) -> list[Outlined | None]:
+    """Return subpaths under a map of the plane; None for those that go nowhere."""
+    walked = [_going_somewhere(path) for path in paths]
+    of_size: dict[int, list[int]] = defaultdict(list)  # the pieces of all curves of a degree are made at once
+    for i, each in enumerate(walked):
+        if each.pieces:
+            of_size[max(map(len, each.pieces))].append(i)
+    found: list[Outlined | None] = [None] * len(paths)
+    for some in of_size.values():
+        nets = mapped(_nets([piece for i in some for piece in walked[i].pieces]), place)
+        if not np.isfinite(nets).all():
+            raise FileError("the outline reaches beyond float64")
+        steps, chord = nets[:, 1:] - nets[:, :-1], nets[:, -1] - nets[:, 0]
+        polygon = np.hypot(steps[..., 0], steps[..., 1]).sum(axis=1)
+        lengths = np.hypot(chord[:, 0], chord[:, 1]) / 2 + polygon / 2
+        stop = 0
+        for i in some:
+            start, stop = stop, stop + len(walked[i].pieces)
+            own = slice(start, stop)
+            found[i] = _outlined(nets[own], lengths[own], polygon[own] > 0, walked[i], paths[i].closed)
+    return found
+
+
+def _outlined(nets: Array, lengths: Array, long: Array, walked: _Walked, closed: bool) -> Outlined | None:
+    """Return a subpath of pieces, of which some are too short to have a length."""
+    segments, arcs = np.array(walked.segments), walked.arcs
+    if not long.all():
+        nets, lengths, segments, arcs = nets[long], lengths[long], segments[long], []
     if not len(nets):
         return None
-    chord = np.hypot(*(nets[:, -1] - nets[:, 0]).T)
-    t = increasing(chord / 2 + polygon / 2, path.closed)
+    t = increasing(lengths, closed)
     if not np.isfinite(t[-1]):
         raise FileError("the outline is longer than float64 can say")
     arched = [Arched(each, nets[a:b], a) for each, a, b in arcs if a < b]
-    return Outlined(joined(nets, t, path.closed), nets, arched, segments)
+    return Outlined(joined(nets, t, closed), nets, arched, segments)
 
 
-def _going_somewhere(path: Subpath) -> tuple[list[tuple[Point, ...]], list[tuple[Arc, int, int]], list[int]]:
-    """Return the points of each piece, the first one included, which are arcs, and of which segment each is.
+class _Walked(NamedTuple):
+    """The points of each piece, the first one included; which are arcs; and of which segment each is."""
 
-    Those that stay where they are are left out.
-    """
+    pieces: list[tuple[Point, ...]]
+    arcs: list[tuple[Arc, int, int]]
+    segments: list[int]
+
+
+def _going_somewhere(path: Subpath) -> _Walked:
+    """Return the pieces of a subpath without those that stay where they are."""
     pieces: list[tuple[Point, ...]] = []
     arcs, owners = [], []
     here = path.start
@@ -82,17 +102,18 @@ def _going_somewhere(path: Subpath) -> tuple[list[tuple[Point, ...]], list[tuple
             here = piece[-1]
         if isinstance(segment, Arc):
             arcs.append((segment, first, len(pieces)))
-    return pieces, arcs, owners
+    return _Walked(pieces, arcs, owners)
 
 
 def _nets(pieces: list[tuple[Point, ...]]) -> Array:
     """Return the Bézier points of all pieces, shape (pieces, degree + 1, 2), those of lower degree raised."""
-    counts = np.array([len(piece) for piece in pieces])
-    nets = np.empty((len(counts), counts.max(), 2))
-    for count in set(counts.tolist()):
-        chosen = np.flatnonzero(counts == count)
-        points = np.array([*chain.from_iterable(pieces[i] for i in chosen)]).reshape(-1, count, 2)
-        nets[chosen] = raised(points, nets.shape[1] - 1)
+    counts = [len(piece) for piece in pieces]
+    most = max(counts)
+    nets = np.empty((len(counts), most, 2))
+    for count in set(counts):
+        same = [piece for piece in pieces if len(piece) == count]
+        points = np.fromiter(chain.from_iterable(chain.from_iterable(same)), float).reshape(-1, count, 2)
+        nets[[k == count for k in counts]] = raised(points, most - 1)
     return nets
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from collections.abc import Callable
@@ -204,16 +205,17 @@ def _arcs(path: Subpath, text: str, relative: bool) -> None:
         path.arc(rx, ry, turned, match[4] == "1", match[5] == "1", (_added(x0, x), _added(y0, y)))
 
 
-def arc(start: Point, rx: float, ry: float, turned: float, large: bool, sweep: bool, end: Point) -> list[Piece]:
+@functools.lru_cache(1 << 12)  # arcs are asked for again when they are written
+def arc(start: Point, rx: float, ry: float, turned: float, large: bool, sweep: bool, end: Point) -> tuple[Piece, ...]:
     """Return cubics along an elliptical arc between two points (SVG 2, §9.5 and appendix B.2).
 
     Radii that are too small grow until the ellipse reaches; without a radius the arc is a line.
     """
     if start == end:
-        return []
+        return ()
     rx, ry = abs(rx), abs(ry)
     if rx == 0 or ry == 0:
-        return [(end,)]
+        return ((end,),)
     c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
 
     def to_circle(x: float, y: float) -> Point:
@@ -249,7 +251,7 @@ def arc(start: Point, rx: float, ry: float, turned: float, large: bool, sweep: b
         x3, y3 = from_circle(x3, y3)
         x, y = start
         pieces.append(((x + x1, y + y1), (x + x2, y + y2), (x + x3, y + y3) if i < count - 1 else end))
-    return pieces
+    return tuple(pieces)
 
 
 def _turned(first: float, angle: float) -> Point:
