@@ -11,8 +11,9 @@ from test_bezier import coast, edges
 import knotwork as kw
 from knotwork.removal.shapes import smooth
 from knotwork.removal.shapes.frame import condensed, framed, netted
-from knotwork.removal.shapes.room import room
-from knotwork.removal.shapes.smooth import SMOOTHINGS
+from knotwork.removal.shapes.knots import samples_around
+from knotwork.removal.shapes.room import room, samples
+from knotwork.removal.shapes.smooth import MANNERS
 
 
 def polyline(points, closed=False):
@@ -44,7 +45,7 @@ def multiplicities(space):
     return counts[:-1] if space.periodic else counts[1:-1]
 
 
-@pytest.mark.parametrize("effort", SMOOTHINGS)
+@pytest.mark.parametrize("effort", MANNERS)
 def test_a_wave_in_few_points_and_simple_knots(effort):
     u = np.linspace(0, 6, 200)
     curve = polyline(np.stack([u, np.sin(2 * u)], axis=1))
@@ -64,6 +65,20 @@ def test_a_ring_has_no_seam(tolerance):
     assert found.matching.closed
     assert (multiplicities(found.spline.space) == 1).all()
     assert len(found.spline.points) < 60
+
+
+def test_samples_held_up_at_an_end_take_part_in_fits():
+    """More than one sample may be nearest to an end; a knot that stays parts those before it from those after."""
+    S = samples(9, 2)
+    S.u[:9] = [0, 0, 0, 0.5, 1, 1, 1, 2, 2]
+    S.hard[:9] = [1, 0, 0, 0, 0, 1, 0, 0, 1]
+    for near in range(9):
+        assert samples_around(S, 8, near, 0, 0) == (0, 5)
+        assert samples_around(S, 8, near, 1, 1) == (5, 8)
+        assert samples_around(S, 8, near, 0, 1) == (0, 8)
+    S.hard[5] = 0  # a joint that may move: all samples there
+    assert samples_around(S, 8, 0, 0, 0) == (0, 6)
+    assert samples_around(S, 8, 8, 1, 1) == (4, 8)
 
 
 def test_a_corner_of_a_ring_stays_the_only_one():
@@ -137,7 +152,7 @@ POINTS = st.lists(st.tuples(*[st.one_of(st.integers(-3, 3), st.floats(-9, 9, wid
 
 
 @settings(max_examples=40, deadline=None)
-@given(POINTS, st.sampled_from([0.05, 0.5, 3.0]), st.sampled_from(sorted(SMOOTHINGS)), st.booleans())
+@given(POINTS, st.sampled_from([0.05, 0.5, 3.0]), st.sampled_from(sorted(MANNERS)), st.booleans())
 def test_bound_holds_on_anything(points, tolerance, effort, closed):
     points = np.array(points, float)
     points = points[np.append(True, (points[1:] != points[:-1]).any(axis=1))]
@@ -149,6 +164,9 @@ def test_bound_holds_on_anything(points, tolerance, effort, closed):
     found = kw.reduce(curve, tolerance, distance="geometric", effort=effort)
     check(curve, found, tolerance)
     assert found.spline.space.periodic == closed
+    if effort == "best":
+        normal = kw.reduce(curve, tolerance, distance="geometric")
+        assert len(found.spline.points) <= len(normal.spline.points)
 
 
 def test_few_points_on_a_coast():
@@ -159,6 +177,7 @@ def test_few_points_on_a_coast():
         (5.0, "normal", "allow", 146),
         (2.0, "fast", "allow", 365),
         (5.0, "normal", "none-new", 165),
+        (5.0, "best", "allow", 140),
     ):
         found = kw.reduce(curve, tolerance, distance="geometric", effort=effort, crossings=crossings)
         assert len(found.spline.points) <= most

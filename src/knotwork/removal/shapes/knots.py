@@ -101,15 +101,23 @@ def window_around(frame, i, j, reach, count):
 
 
 @kernel(inline=False)
-def samples_around(u, last, j, k0, k1):
-    """Return the last sample no later than joint k0, and the first no earlier than joint k1 + 1, looking from j."""
+def samples_around(S, last, j, k0, k1):
+    """Return the last sample no later than joint k0, and the first no earlier than joint k1 + 1, looking from j.
+
+    Samples at a joint count as within, but for one that stays: more than one may be held up there.
+    """
+    u = S.u
     a = j
     while a > 0 and u[a] > k0:
         a -= 1
     while a < last and u[a + 1] <= k0:
         a += 1
+    while a > 0 and u[a - 1] == k0 and S.hard[a] != 1:
+        a -= 1
     b = a
     while b < last and u[b] < k1 + 1:
+        b += 1
+    while b < last and u[b + 1] == k1 + 1 and S.hard[b] != 1:
         b += 1
     return a, b
 
@@ -200,7 +208,7 @@ def thinned(G, S, last, count, room, effort):
             k += 1
             continue
         k0, k1 = window_around(frame, k - 1, k, effort.reach, e)
-        ja, jb = samples_around(S.u, front, j, k0, k1)
+        ja, jb = samples_around(S, front, j, k0, k1)
         j = ja
         kept_frame(G, S, k0, k1, ja, jb, room, 1)
         for i in range(k - 1, e + 1):
@@ -276,12 +284,12 @@ def mended(G, S, last, count, most, places, room, effort):
         if rest[0] < count and k + effort.reach + FELT >= rest[0]:
             pulled(G, S, last, count, effort.chunk, room)
         e, front = rest[0], rest[3]
-        ja, jb = samples_around(S.u, front, j, k, k)
+        ja, jb = samples_around(S, front, j, k, k)
         j = ja
         worst = measured(G, k, k, S, ja, jb, room, 0, 0, math.inf, 0.0)[1]
         if worst > TARGET:
             k0, k1 = window_around(frame, k, k, effort.reach, e)
-            ja, jb = samples_around(S.u, front, j, k0, k1)
+            ja, jb = samples_around(S, front, j, k0, k1)
             kept_frame(G, S, k0, k1, ja, jb, room, 1)
             if fitted(G, k0, k1, S, ja, jb, room, effort.steps) > TARGET:
                 restored_frame(G, S, k0, k1, ja, jb, room, 1)
@@ -301,7 +309,7 @@ def mended(G, S, last, count, most, places, room, effort):
                 count, e = count + 1, e + 1
                 rest[0] = e
                 k0, k1 = window_around(frame, k, k + 1, effort.reach, e)
-                ja, jb = samples_around(S.u, front, ja, k0, k1)
+                ja, jb = samples_around(S, front, ja, k0, k1)
                 fitted(G, k0, k1, S, ja, jb, room, effort.steps)
                 k = k0
                 continue

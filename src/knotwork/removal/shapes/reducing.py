@@ -244,23 +244,27 @@ def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
         effort=wanted.effort, crossings=wanted.crossings, rational=rational, progress=wanted.progress,
     )  # fmt: skip
     low = _lower_bound(shape, degree) + (0 if closed else degree)
-    if found is None:
-        return _bezier(shape, degree, wanted._replace(progress=None))
-    if len(found.points) >= curve.space.dimension:
-        return _itself(shape, wanted.effort, low)
-    t = over_domain(found.lengths, curve.space.domain, periodic)
+    for smooth in sorted(found, key=lambda each: len(each.points)):
+        if len(smooth.points) >= curve.space.dimension:
+            return _itself(shape, wanted.effort, low)
+        spline = _spline(smooth, curve.space.domain, periodic)
+        g, here = nets(spline, rational)
+        scaled = Scaled(shape.pieces, g, allowed, rational=rational, given=shape.off + here)
+        u, s, _ = scaled.refined(*_around(smooth, len(shape.pieces), len(g)))
+        bound = scaled.bound(u, s)
+        if np.all(bound <= allowed):  # all but for rounding
+            return Reduction(spline, bound, "geometric", (), low, None, Matching(s, u, closed), wanted.effort)
+    return _bezier(shape, degree, wanted._replace(progress=None))
+
+
+def _spline(smooth: Smooth, domain: Sequence[Any], periodic: bool) -> Spline:
+    """Return a smooth cubic as a spline over a domain."""
+    t = over_domain(smooth.lengths, domain, periodic)
     if periodic:
-        space = SplineSpace(3, np.append(np.repeat(t[:-1], found.times[:-1]), t[-1]), periodic=True)
+        space = SplineSpace(3, np.append(np.repeat(t[:-1], smooth.times[:-1]), t[-1]), periodic=True)
     else:
-        space = SplineSpace(3, np.concatenate([t[:1], np.repeat(t, found.times), t[-1:]]))
-    spline = Spline(space, found.points)
-    g, here = nets(spline, rational)
-    scaled = Scaled(shape.pieces, g, allowed, rational=rational, given=shape.off + here)
-    u, s, _ = scaled.refined(*_around(found, len(shape.pieces), len(g)))
-    bound = scaled.bound(u, s)
-    if not np.all(bound <= allowed):  # only rounding can make it so
-        return _bezier(shape, degree, wanted._replace(progress=None))
-    return Reduction(spline, bound, "geometric", (), low, None, Matching(s, u, closed), wanted.effort)
+        space = SplineSpace(3, np.concatenate([t[:1], np.repeat(t, smooth.times), t[-1:]]))
+    return Spline(space, smooth.points)
 
 
 #: how each form is found, and the degrees that it may have, that of choice last

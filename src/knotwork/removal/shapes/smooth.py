@@ -15,6 +15,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
+from knotwork.geometry.lengths import SHORTEST
 from knotwork.removal.result import Progress, part_of, tell
 from knotwork.removal.shapes import corners
 from knotwork.removal.shapes.bezier import ALLOWED, Curves, as_pieces, efforts, prepared, searched
@@ -25,16 +26,14 @@ from knotwork.removal.shapes.residuals import FAIR
 from knotwork.removal.shapes.samples import counted, finely, merged
 from knotwork.removal.shapes.search import Effort, Found, Search, Task, certified
 
-#: knots for each piece, the joint at its end being one of them
-PARTS = 3
 #: sweeps of least squares to begin with
 SWEEPS = 3
 #: pieces of a closed curve that is turned, at least
 ROUND = 4 * DEGREE
 #: knots put in on each side of the seam, at most, so that it can go
 HELP = 6
-#: the least length of a piece, per mean length
-LEAST = 1e-6
+#: the least length of a piece to begin with, per mean length: a period cannot have much shorter ones
+LEAST = 1e-4
 
 
 #: pieces in their place at once
@@ -43,16 +42,25 @@ CHUNK = 256
 certified_smooth = certified.variant(repaired=mended)
 
 
-class Smoothing(NamedTuple):
-    """How long to search for knots that can go."""
+class Manner(NamedTuple):
+    """A way from pieces to few knots."""
 
+    #: knots for each piece, the joint at its end being one of them
+    parts: int
     #: pieces on each side of a knot that are fitted again
     reach: int
-    #: how often all are tried
+    #: how often all knots are tried
     passes: int
 
 
-SMOOTHINGS = {"fast": Smoothing(4, 1), "normal": Smoothing(5, 2), "best": Smoothing(7, 8)}
+#: the ways of each effort; the fewest knots count
+MANNERS = {
+    "fast": (Manner(3, 4, 1),),
+    "normal": (Manner(3, 5, 2),),
+    "best": (Manner(3, 5, 2), Manner(2, 5, 8), Manner(4, 4, 8)),
+}
+#: the effort for the pieces to begin with: fewer of them leave no fewer knots (four coasts and a drawing)
+PIECES = {"fast": "fast", "normal": "normal", "best": "normal"}
 
 
 class Smooth(NamedTuple):
@@ -73,33 +81,41 @@ class Smooth(NamedTuple):
 def reduce_smooth(
     nets: Array, tolerance: Any, *, closed: bool, periodic: bool, angle: float | None, lines: bool, keep: Any,
     effort: str, crossings: str, rational: bool, progress: Progress | None = None,
-) -> Smooth | None:  # fmt: skip
-    """Return a smooth spline within a distance of one curve, or none; its distance is still to be proven.
+) -> list[Smooth]:  # fmt: skip
+    """Return smooth splines within a distance of one curve, found in several ways; it is still to be proven of each.
 
     The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes. If
     that cannot be proven, the place where it was opened stays a knot of full count.
     """
     given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational)
-    how = efforts(effort, crossings)
     if not given.possible:
-        return None
-    F, hard, unit = given.nets, given.hard, given.unit
-    found = searched(given, how, DEGREE, part_of(progress, 0, 2))[0]
-    q, d = F.shape[1] - 1, len(unit)
+        return []
+    stays = not periodic or _seam_stays(given.nets, given.hard, angle, 1 / given.unit)
+    manners, how = MANNERS[effort], efforts(PIECES[effort], crossings)
+    found = searched(given, how, DEGREE, part_of(progress, 0, 1 + len(manners)))[0]
     if not len(found.G):
-        if rational or q > DEGREE:
-            return None
-        found = as_pieces(F)
-    most = ALLOWED * (len(F) + 4)
-    count = counted(F, given.at, 1 / unit, extent(d))
+        if rational or given.nets.shape[1] > DEGREE + 1:
+            return []
+        found = as_pieces(given.nets)
+    parts = [part_of(progress, i, 1 + len(manners)) for i in range(1, 1 + len(manners))]
+    ways = [_smooth(found, given, how[0], *way, periodic, stays) for way in zip(manners, parts, strict=True)]
+    return [smooth for smooth in ways if smooth]
+
+
+def _smooth(
+    found: Found, given: Curves, effort: Effort, manner: Manner, progress: Progress | None, periodic: bool, stays: bool
+) -> Smooth | None:
+    """Return a smooth spline from pieces, in one way, or none; `stays`: whether the seam is a corner, or kept."""
+    F = given.nets
+    count = counted(F, given.at, 1 / given.unit, extent(len(given.unit)))
     size = count + count // 2 + 64
-    room = min(most, 4 * len(found.G) + size)
-    search = SmoothSearch(F, hard, given, how[0], SMOOTHINGS[effort], size, room, part_of(progress, 1, 2))
+    room = min(ALLOWED * (len(F) + 4), 4 * len(found.G) + size)
+    search = SmoothSearch(F, given.hard, given, effort, manner, size, room, progress)
     path = search.smoothed(found)
     if path is None:
         return None
     result = search.result(path, given, 0, periodic)
-    if periodic and not _seam_stays(F, hard, angle, 1 / unit):
+    if not stays:
         turned = search.turned(path)
         path = search.thinner() if turned else None
         if path is not None:
@@ -118,12 +134,12 @@ class SmoothSearch(Search):
     """Working space for one curve, and the search for few knots."""
 
     def __init__(
-        self, F: Array, hard: Array, given: Curves, effort: Effort, how: Smoothing, size: int, pieces: int,
+        self, F: Array, hard: Array, given: Curves, effort: Effort, manner: Manner, size: int, pieces: int,
         progress: Progress | None,
     ) -> None:  # fmt: skip
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
-        self.F, self.hard, self.progress, self.passes = F, hard, progress, how.passes
-        self.effort = effort._replace(reach=how.reach, chunk=CHUNK)
+        self.F, self.hard, self.progress, self.manner = F, hard, progress, manner
+        self.effort = effort._replace(reach=manner.reach, chunk=CHUNK)
         self.G, self.samples, self.room = self.space.G, self.space.samples, self.space.room
         self.target, self.most = float(given.target()[0]), pieces - 8
         self.count = self.end = self.last = 0
@@ -142,10 +158,10 @@ class SmoothSearch(Search):
     def thinner(self) -> Path | None:
         """Take out knots, and prove what is left."""
         at = self.room.frame.at
-        for k in range(self.passes):
+        for k in range(self.manner.passes):
             before = at[self.count - 1]
             self._thinned()
-            tell(self.progress, (k + 1) / (self.passes + 1))
+            tell(self.progress, (k + 1) / (self.manner.passes + 1))
             if at[self.count - 1] == before:
                 break
         return self._proven()
@@ -185,13 +201,13 @@ class SmoothSearch(Search):
         v = np.append(0.0, np.cumsum(np.sqrt((np.diff(on, axis=0) ** 2).sum(axis=1))))
         corner = np.zeros(pieces + 1, bool)
         corner[np.round(u[hard]).astype(int)] = True
-        parts = np.where(corner[:-1] & corner[1:], 1, PARTS)  # a piece between corners stays alone
+        parts = np.where(corner[:-1] & corner[1:], 1, self.manner.parts)  # a piece between corners stays alone
         first = np.concatenate([[0], np.cumsum(parts)])
         piece = np.repeat(np.arange(pieces), parts)
         count = self.count = int(first[-1])
         places = np.append(piece + (np.arange(count) - first[piece]) / parts[piece], pieces)
         x = np.interp(places, u, v)
-        h = np.maximum(np.diff(x), max(v[-1], 1.0) * LEAST / count)
+        h = np.maximum(np.diff(x), max(v[-1], 1.0) * max(LEAST / count, 2 * SHORTEST))
         x = np.append(0.0, np.cumsum(h))
         times = np.ones(count + 1, np.int64)
         times[first[corner]] = DEGREE
