@@ -107,8 +107,22 @@ def _warm() -> None:
 
     Kernels run as plain Python until much of it is done: the first hundred strokes would take ten times as long.
     """
-    script = "import os; getattr(os, 'nice', int)(15); from knotwork.editor.launch import first_curve; first_curve()"
-    subprocess.run([sys.executable, "-c", script], check=False, capture_output=True)
+    command = [sys.executable, "-c", "from knotwork.editor.launch import compile_apart; compile_apart()"]
+    silent = subprocess.DEVNULL
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=silent, stderr=silent) as compiler:
+        compiler.wait()
+    first_curve()
+
+
+def compile_apart() -> None:
+    """Compile in a process of its own, which ends with the one that began it: then its standard input does."""
+
+    def watch() -> None:
+        sys.stdin.buffer.read()
+        os._exit(0)
+
+    threading.Thread(target=watch, daemon=True).start()
+    getattr(os, "nice", int)(15)
     first_curve()
 
 
