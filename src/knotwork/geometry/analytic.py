@@ -9,20 +9,17 @@ parameter of a rational arc is not the angle.
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, all_finite
+from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
+from knotwork.geometry.bezier import fitting, over_breaks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
-
-#: the space of a line that is one piece
-_UNIT = SplineSpace.bezier(1, [0.0, 1.0])
 
 
 class Frame(NamedTuple):
@@ -65,7 +62,7 @@ def line(p: Any, q: Any, start: float = 0.0, stop: float = 1.0) -> Spline:
     >>> analytic.line([0, 0], [4, 2])(0.5).tolist()
     [2.0, 1.0]
     """
-    return _spline((_pieces(1, (start, stop)),), np.array([p, q]), False)
+    return fitting(over_breaks(1, (start, stop)), np.array([p, q]))
 
 
 def ellipse(center: Any, a: Any, b: Any, start: float = 0.0, stop: float = 2 * math.pi) -> Spline:
@@ -91,7 +88,7 @@ def ellipse(center: Any, a: Any, b: Any, start: float = 0.0, stop: float = 2 * m
     ((2,), [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     """
     breaks, rows = _turn(float(start), float(stop))
-    return _spline((_pieces(2, breaks),), _weighted(rows, np.array([a, b, center], np.float64)), True)
+    return fitting(over_breaks(2, breaks), _weighted(rows, np.array([a, b, center], np.float64)), True)
 
 
 def hyperbola(center: Any, a: Any, b: Any, start: float, stop: float) -> Spline:
@@ -108,7 +105,7 @@ def hyperbola(center: Any, a: Any, b: Any, start: float, stop: float) -> Spline:
         raise ParameterError(f"a hyperbola from {start} to {stop} given; cosh overflows beyond 300")
     rows = np.array([[math.cosh(u), math.sinh(u), w] for u, w in ((start, 1.0), (m, math.cosh(h)), (stop, 1.0))])
     net = _weighted(rows, np.array([a, b, center], np.float64))
-    return _spline((_pieces(2, (float(start), float(stop))),), net, True)
+    return fitting(over_breaks(2, (float(start), float(stop))), net, True)
 
 
 def parabola(vertex: Any, a: Any, b: Any, start: Any, stop: Any) -> Spline:
@@ -196,7 +193,7 @@ def revolution(profile: Spline, origin: Any, axis: Any, start: float = 0.0, stop
     net = np.empty((len(rows), len(h), 4))
     net[..., :3] = (rows @ parts.reshape(3, -1)).reshape(len(rows), len(h), 3)
     net[..., 3] = rows[:, 2:] * h[:, 3]
-    return _spline((_pieces(2, breaks), *profile.spaces), net, True)
+    return fitting((over_breaks(2, breaks), *profile.spaces), net, True)
 
 
 def extrusion(profile: Spline, direction: Any, start: float = 0.0, stop: float = 1.0) -> Spline:
@@ -212,14 +209,14 @@ def extrusion(profile: Spline, direction: Any, start: float = 0.0, stop: float =
     net = np.repeat(profile.coefficients[:, None], 2, axis=1)
     for i, v in enumerate((start, stop)):
         net[:, i, : len(D)] += profile.homogeneous[:, -1:] * D * v
-    return _spline((*profile.spaces, _pieces(1, (start, stop))), net, profile.rational)
+    return fitting((*profile.spaces, over_breaks(1, (start, stop))), net, profile.rational)
 
 
 def plane(frame: Frame, u: Sequence[float], v: Sequence[float]) -> Spline:
     """Return the rectangle of the points origin + u · x + v · y, u and v between two numbers each."""
     O, x, y, _ = frame
     net = O + np.array(u)[:, None, None] * x + np.array(v)[:, None] * y
-    return _spline((_pieces(1, u), _pieces(1, v)), net, False)
+    return fitting((over_breaks(1, u), over_breaks(1, v)), net)
 
 
 def cone(frame: Frame, radius: float, angle: float, u: Sequence[float], v: Sequence[float]) -> Spline:
@@ -255,24 +252,6 @@ def _weighted(rows: Array, vectors: Array) -> Array:
     net[:, :-1] = rows @ vectors
     net[:, -1] = rows[:, 2]
     return net
-
-
-def _pieces(degree: int, breaks: Sequence[Any]) -> SplineSpace:
-    """Return the space of continuous pieces over breaks; floats that increase are not checked once more."""
-    plain = all(type(x) is float for x in breaks) and all(a < b for a, b in itertools.pairwise(breaks))
-    if not plain or not math.isfinite(breaks[-1] - breaks[0]):
-        return SplineSpace.bezier(degree, breaks)
-    if degree == 1 and breaks == (0.0, 1.0):
-        return _UNIT
-    knots = [breaks[0], *(x for x in breaks for _ in range(degree)), breaks[-1]]
-    return SplineSpace.trusted(degree, np.array(knots))
-
-
-def _spline(spaces: tuple[SplineSpace, ...], net: Array, rational: bool) -> Spline:
-    """Return the spline of control points that fit; floats need only be finite, as weights are positive here."""
-    if net.dtype != np.float64 or not all_finite(net) or any(space.exact for space in spaces):
-        return Spline(spaces, net, rational)
-    return Spline.trusted(spaces, net, rational)
 
 
 def _skew(z: Sequence[float]) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import operator
 from fractions import Fraction
 from math import comb
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, all_finite
 from knotwork.insertion.pieces import to_bezier
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -92,8 +93,27 @@ def joined(nets: Array, t: Array, closed: bool) -> Spline:
     points = nets[:, 1:].reshape(-1, nets.shape[2])
     if closed:
         return Spline(SplineSpace(n, np.append(np.repeat(t[:-1], n), t[-1]), periodic=True), points)
-    knots = np.concatenate([t[:1], np.repeat(t, n), t[-1:]])
-    return Spline(SplineSpace(n, knots), np.concatenate([nets[0, :1], points]))
+    return fitting(over_breaks(n, t), np.concatenate([nets[0, :1], points]))
+
+
+def over_breaks(n: int, breaks: Any) -> SplineSpace:
+    """Return the space of continuous pieces of degree n ≥ 1 over breaks; floats that increase are not checked again."""
+    t = np.asarray(breaks)
+    finite = t.dtype == np.float64 and math.isfinite(t.item(-1) - t.item(0))
+    if not finite or np.count_nonzero(t[:-1] < t[1:]) < len(t) - 1:
+        return SplineSpace.bezier(n, breaks)
+    knots = np.empty(n * len(t) + 2)
+    knots[0], knots[-1] = t[0], t[-1]
+    knots[1:-1].reshape(-1, n)[:] = t[:, None]
+    return SplineSpace.trusted(n, knots)
+
+
+def fitting(spaces: SplineSpace | tuple[SplineSpace, ...], net: Array, rational: bool = False) -> Spline:
+    """Return the spline of an array that was made to fit, whose weights are positive: it need only be finite."""
+    spaces = (spaces,) if isinstance(spaces, SplineSpace) else spaces
+    if net.dtype != np.float64 or not all_finite(net) or any(space.exact for space in spaces):
+        return Spline(spaces, net, rational)
+    return Spline.trusted(spaces, net, rational)
 
 
 def parted(spline: Spline) -> Array:
