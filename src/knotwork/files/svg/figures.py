@@ -102,6 +102,8 @@ class _Figures:
         #: where the outlines met, and where they meet
         self.given, self.now = met, met
         self.new: dict[int, Found] = {}
+        #: the last curves that were written: of which subpath, in which digits
+        self.read: dict[int, tuple[Subpath, int | None, Drawn]] = {}
         #: outlines that nothing may change
         self.stay: set[int] = set()
         self.changed: set[int] = set()
@@ -141,12 +143,17 @@ class _Figures:
             if i < 0:
                 continue
             made = new.get(i) if way is not given else None
+            known, digits = self.read.get(i), written.encoder.digits
+            if known and known[0] is way and known[1] == digits:
+                result[i] = known[2]
+                continue
             starts = _starts(way, outline, i) if made else _starts_of(given)
             (read,) = outlined([as_written(way, written.encoder)])
             nets, segments = (read.nets, read.segments) if read else (self.drawing.nets[i][:0], np.zeros(0, int))
             standing = made.made.standing if made and made.made else self.as_given[i].standing
             spans = [range(starts[k], max(starts[k + 1], starts[k] + 1)) for k in segments.tolist()]
             result[i] = Drawn(raised(nets, 3), _together(standing, spans), made)
+            self.read[i] = way, digits, result[i]
         return result
 
 

@@ -66,6 +66,15 @@ class Written(NamedTuple):
     encoder: Encoder
 
 
+class Way(NamedTuple):
+    """A new spline as a subpath, how near a line a piece was to become one, and how far the subpath is from it."""
+
+    spline: Spline
+    within: float
+    subpath: Subpath
+    off: float
+
+
 class Known(NamedTuple):
     """What was written, and what for: it need not be made twice."""
 
@@ -92,6 +101,8 @@ class Drawing:
     maps: tuple[tuple[int, Affine], ...]
     #: the last text of each outline
     _known: dict[Span, Known] = field(default_factory=dict, repr=False, compare=False)
+    #: the last subpath of each spline
+    _ways: dict[int, Way] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def arcs(self) -> dict[int, list[tuple[int, int]]]:
@@ -162,7 +173,7 @@ class Drawing:
         if known and not longer and known.allowed == allowed and known.says(some):
             found = known.written
         else:
-            found = _text(outline, some, allowed, longer)
+            found = _text(outline, some, allowed, longer, self._ways)
             if not longer:
                 self._known[outline.span] = Known(allowed, {i: some[i] for i in found.new}, found)
         a, b = outline.span
@@ -241,19 +252,23 @@ def _scale(place: Affine) -> float:
     return math.hypot(a + d, b - c) / 2 + math.hypot(a - d, b + c) / 2
 
 
-def _text(outline: Outline, changed: Mapping[int, Spline], allowed: list[float], longer: bool) -> Written:
+def _text(
+    outline: Outline, changed: Mapping[int, Spline], allowed: list[float], longer: bool, ways: dict[int, Way]
+) -> Written:
     """Return the shortest path data of an outline whose subpaths rounding may move so far."""
     least = min(allowed, default=0.0)
     if 0 < least < math.inf:
         digits = digits_for(least)
         for more in range(3):  # an arc may need a digit or two more than a point
-            found = _written(outline, changed, Encoder(digits + more), longer)
+            found = _written(outline, changed, Encoder(digits + more), longer, ways)
             if all(w <= a for w, a in zip(found.moved, allowed, strict=True)):
                 return found
-    return _written(outline, changed, Encoder(None), longer)
+    return _written(outline, changed, Encoder(None), longer, ways)
 
 
-def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder, longer: bool) -> Written:
+def _written(
+    outline: Outline, changed: Mapping[int, Spline], encoder: Encoder, longer: bool, known: dict[int, Way]
+) -> Written:
     """Return the path data of an outline: of each subpath the shorter of the new text and the old one, if asked."""
     if outline.corners:
         return _points(outline, changed, encoder)
@@ -262,13 +277,17 @@ def _written(outline: Outline, changed: Mapping[int, Spline], encoder: Encoder, 
     for subpath, i in zip(outline.subpaths, outline.splines, strict=True):
         ways = [] if i in changed and longer else [(subpath, 0.0)]
         if i in changed:
-            ways.append(subpath_of(changed[i], subpath.closed, within, outline.arcs.get(i, ())))
-        found = [(encoder.subpath(way, pen), way, off) for way, off in ways]
-        (text, pen), way, off = min(found, key=lambda each: len(each[0][0]))
+            way = known.get(i)
+            if way is None or way.spline is not changed[i] or way.within != within:
+                made = subpath_of(changed[i], subpath.closed, within, outline.arcs.get(i, ()))
+                known[i] = way = Way(changed[i], within, *made)
+            ways.append((way.subpath, way.off))
+        found = [(encoder.subpath(path, pen), path, off) for path, off in ways]
+        (text, pen), path, off = min(found, key=lambda each: len(each[0][0]))
         parts.append(text)
-        chosen.append(way)
-        worst.append(off if encoder.digits is None else off + moved(way, encoder))
-        new |= {i} if way is not subpath else set()
+        chosen.append(path)
+        worst.append(off if encoder.digits is None else off + moved(path, encoder))
+        new |= {i} if path is not subpath else set()
     return Written("".join(parts), worst, new, chosen, encoder)
 
 
