@@ -106,4 +106,5 @@ def _runs(curve: Curve) -> list[_Run]:
     if not curve.halved.any():
         return [_Run(0, nets)]
     twice = np.concatenate([nets, nets])
-    return [_Run(a, twice[a:b]) for a, b in stretches(curve.halved, curve.closed)]
+    around = curve.closed and curve.halved[0] < STAYS  # or else it begins where it did
+    return [_Run(a, twice[a:b]) for a, b in stretches(curve.halved, around)]
