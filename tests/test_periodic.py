@@ -10,14 +10,13 @@ installed, which takes half the time.
 
 from __future__ import annotations
 
-import concurrent.futures
 import fractions
 import importlib
 import importlib.util
 import math
-import os
+import multiprocessing
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -29,9 +28,7 @@ from knotwork import Spline, SplineSpace
 from knotwork.errors import KnotError
 from knotwork.unrolled import reach
 
-RATIONAL: Callable[[int, int], Any] = (
-    importlib.import_module("gmpy2").mpq if importlib.util.find_spec("gmpy2") else fractions.Fraction
-)
+RATIONAL: type[Any] = importlib.import_module("gmpy2").mpq if importlib.util.find_spec("gmpy2") else fractions.Fraction
 EPS = np.finfo(float).eps
 B = -1.4682183816953924
 C = math.nextafter(B, -9)
@@ -92,7 +89,9 @@ def test_a_reduced_period_can_be_made_again():
 def rationals(values: np.ndarray) -> np.ndarray:
     """Return the array with each number as a rational of the same value: gmpy2's or a Fraction."""
     result = np.empty(values.shape, object)
-    result.reshape(-1)[:] = [RATIONAL(*x.as_integer_ratio()) for x in values.reshape(-1).tolist()]
+    result.reshape(-1)[:] = [
+        x if isinstance(x, RATIONAL) else RATIONAL(*x.as_integer_ratio()) for x in values.reshape(-1).tolist()
+    ]
     return result
 
 
@@ -193,8 +192,8 @@ def block(seed: int, count: int = 1000) -> None:
 def main(count: int, first: int = 0) -> None:
     """Check as many cases as asked for, rounded up to whole blocks, and tell what was checked."""
     seeds = range(first, first + -(-count // 1000))
-    with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
-        for done, _ in enumerate(pool.map(block, seeds), 1):
+    with multiprocessing.Pool() as pool:
+        for done, _ in enumerate(pool.imap(block, seeds), 1):
             print(f"{1000 * done:,} cases are right", flush=True)
 
 
