@@ -96,6 +96,9 @@ def points() -> None:
         *smooth, peucker, freed = SMOOTH[name]
         line = f"{name:16}"
         for (form, effort), before in zip(ways, (*smooth, freed), strict=True):
+            if form == "polyline" and curves.shape[1] > 2:
+                line += f"{'-':>24}"
+                continue
             options = {"distance": "geometric", "form": form, "effort": effort, "crossings": "allow"}
             found, best = least_time(partial(each_reduced, closed, tolerance, **options), 1 if effort == "best" else 2)
             assert all(each.bound <= tolerance for each in found)
