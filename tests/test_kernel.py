@@ -518,7 +518,7 @@ def test_a_kernel_that_moves_to_another_module_is_another(monkeypatch):
 
 #: kernels of searches that still take more
 LONG = {"follow", "fitted", "weights_of_row", "squeeze_out"}
-LONG |= {"descended", "fitted_window", "tried", "longest", "measured", "measured_frame", "closed_up"}
+LONG |= {"descended", "fitted_window", "tried", "longest", "measured", "measured_bound", "measured_frame", "closed_up"}
 
 
 def test_a_kernel_takes_at_most_eight_arguments():

@@ -69,6 +69,29 @@ def test_pieces_at_the_ends_stay_with_their_derivatives(form):
     assert (whole[-1][0] != old[-1][0]).any()
 
 
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("periodic", [False, True])
+def test_pieces_where_a_closed_curve_closes_stay(form, periodic):
+    """If derivatives are asked for there; where it closes, the ring does not turn more than elsewhere."""
+    points = ring(60)
+    if periodic:
+        curve = kw.Spline(kw.SplineSpace(1, np.arange(61.0), periodic=True), np.roll(points, -1, axis=0))
+    else:
+        curve = kw.curve(np.concatenate([points, points[:1]]), 1, np.concatenate([[0], np.arange(61.0), [60]]))
+    found = kw.reduce(curve, 0.02, distance="geometric", form=form, ends=1).spline
+    new = pieces(found)
+    ends = {tuple(p) for p in np.concatenate([new[:, 0], new[:, -1]])}
+    assert {tuple(points[i]) for i in (59, 0, 1)} <= ends
+    for a, b in ((59, 0), (0, 1)):
+        (net,) = (net for net in new if (net[0] == points[a]).all())
+        assert (net[-1] == points[b]).all()
+        middle = points[a] + (points[b] - points[a]) * np.linspace(0, 1, len(net))[:, None]
+        assert np.abs(net - middle).max() <= 1e-15
+    assert len(new) < 20
+    free = kw.reduce(curve, 0.02, distance="geometric", form=form).spline
+    assert len(pieces(free)) < len(new)
+
+
 def test_free_ends_of_polylines_may_move():
     zigzag = np.stack([np.arange(40.0), np.tile([0.9, -0.9], 20)], axis=1)
     found = kw.fit(zigzag, 1.0, form="polyline", ends=None)

@@ -22,7 +22,10 @@ from knotwork.cli.terminal import Tolerance
 @click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="[default: geometric]")
 @click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), default="spline", help="[default: spline]")
 @click.option("--effort", type=click.Choice(["fast", "normal", "best"]), default="normal", help="[default: normal]")
-def fit(job: Job, tolerance: Tolerance, degree: int, distance: str | None, form: str, effort: str) -> None:
+@click.option("--joints", type=click.Choice(["smooth", "g1", "free"]), help="How Bézier pieces meet, as in reduce.")
+def fit(
+    job: Job, tolerance: Tolerance, degree: int, distance: str | None, form: str, effort: str, joints: str | None
+) -> None:
     """Find curves with few knots within a tolerance of the points of FILE, and of the lines from each to the next.
 
     \b
@@ -36,7 +39,7 @@ def fit(job: Job, tolerance: Tolerance, degree: int, distance: str | None, form:
         parameters = spline.space.breaks if distance == "parametric" else None
         found = kw.fit(
             corners(spline), allowed, parameters=parameters, degree=degree, distance=distance, form=form,
-            effort=effort, closed=spline.space.periodic,
+            effort=effort, closed=spline.space.periodic, joints=joints or "smooth",
         )  # fmt: skip
         return found.spline, found.bound
 

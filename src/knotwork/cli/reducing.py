@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 IN_PLACE = {"svg": "bezier", "geojson": "polyline", "gpx": "polyline"}
 #: what is said where crossings are not looked at
 NOT_LINES = "--no-crossings is for drawings in place, and for maps, tracks and tables whose lines stay lines"
+#: where there are no joints to choose
+NOT_PIECES = "--joints is for Bézier pieces; glyphs are smooth where they were, and lines have no handles"
 #: and where there are no degrees
 NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON and GPX in place"
 
@@ -46,6 +48,12 @@ NOT_GROUND = "a length on the ground is for maps and tracks in degrees: GeoJSON 
 @click.option(
     "--keep", metavar="FEATURES", type=terminal.features, multiple=True, help="What stays, as in corners,lines,extrema."
 )
+@click.option(
+    "--joints",
+    type=click.Choice(["smooth", "g1", "free"]),
+    help="How Bézier pieces meet: smooth where that costs no piece, or at more pieces everywhere, or as they come."
+    "  [default: smooth]",
+)
 @click.option("--even-if-longer", is_flag=True, help="Rewrite paths of a drawing even where they get longer.")
 @click.option("--precision", type=click.IntRange(-6, 17), help="Digits after the point in a drawing.")
 @click.option("--shared-borders", is_flag=True, help="Borders that areas of a map share stay shared.")
@@ -65,6 +73,7 @@ def reduce(
     form: str | None,
     effort: str,
     keep: Sequence[Sequence[str]],
+    joints: str | None,
     even_if_longer: bool,
     precision: int | None,
     shared_borders: bool,
@@ -103,6 +112,8 @@ def reduce(
         stays = output is None or output == STREAM or format_of(output) is kind
         drawn = stays and kind.module in IN_PLACE and form in (None, IN_PLACE[kind.module])
         drawn = drawn and distance != "parametric" and degree is None and not flip
+        if joints and (kind.module == "fonts" or (drawn and IN_PLACE[kind.module] != "bezier")) and stays:
+            raise click.UsageError(NOT_PIECES)
         if tolerance.ground and not (drawn and IN_PLACE[kind.module] == "polyline"):
             raise click.UsageError(NOT_GROUND)
         if kind.module == "fonts" and stays:
@@ -115,6 +126,7 @@ def reduce(
             raise click.UsageError("of drawings, --keep takes corners, which stay anyway, and lines; of maps nothing")
         if drawn:
             how = {"effort": effort, "precision": precision, "lines": "lines" in features}
+            how |= {"joints": joints or "smooth"}
             how |= {"shared": shared_borders, "no_crossings": no_crossings, "ground": tolerance.ground}
             return _lighter(job, file, output, tolerance, even_if_longer, **how)
         shapes = distance is None and degree is None and kind.shapes
@@ -137,6 +149,7 @@ def reduce(
                 "effort": effort,
                 "degree": degree if shape else None,
             }
+            how |= {"joints": joints} if joints else {}
             reduction = kw.reduce(spline, allowed, **how, keep=kept, progress=progress)
             return upside_down(reduction.spline) if flip else reduction.spline, reduction.bound
 

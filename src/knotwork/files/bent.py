@@ -69,7 +69,7 @@ class Bent(NamedTuple):
 
 
 def bent(
-    curves: Sequence[Curve], tolerance: float, *, effort: str, angle: float | None, lines: bool
+    curves: Sequence[Curve], tolerance: float, *, effort: str, angle: float | None, lines: bool, joints: str
 ) -> list[Bent | None]:
     """Return each curve in few pieces within a distance of its shape; None for one that stays as it is.
 
@@ -86,7 +86,9 @@ def bent(
         nets = [runs[c][k].nets for c, k in some]
         at, closed = np.cumsum([0, *map(len, nets)]), [curves[c].closed and len(runs[c]) == 1 for c, _ in some]
         allowed = tolerance / 2**halved
-        found = reduce_bezier(np.concatenate(nets), at, allowed, closed=closed, effort=effort, angle=angle, lines=lines)
+        found = reduce_bezier(
+            np.concatenate(nets), at, allowed, closed=closed, effort=effort, angle=angle, lines=lines, joints=joints
+        )
         for i in np.flatnonzero(np.diff(found.at)).tolist():
             c, k = some[i]
             runs[c][k] = runs[c][k]._replace(found=found, k=i)

@@ -21,8 +21,8 @@ from knotwork.files.svg.inplace import Drawing
 from knotwork.files.uncrossed import Crossings, Line, Reduce, apart, count_crossings, uncrossed
 from knotwork.geometry.bezier import joined, parted, raised
 from knotwork.removal import reduce as reduce_one
-from knotwork.removal.shapes.bezier import EFFORTS
-from knotwork.removal.shapes.features import CORNER
+from knotwork.removal.shapes.bezier import EFFORTS, JOINTS
+from knotwork.removal.shapes.corners import CORNER
 from knotwork.removal.shapes.reducing import breaks_by_length
 from knotwork.spline import Spline
 
@@ -51,6 +51,7 @@ def lighter(
     effort: str = "normal",
     corners: bool = True,
     lines: bool = False,
+    joints: str = "smooth",
     precision: int | None = None,
     shared: bool = False,
     no_crossings: bool = False,
@@ -73,6 +74,8 @@ def lighter(
         Whether joints where a curve turns by more than 10 degrees stay exactly.
     lines : bool
         Whether straight runs longer than four tolerances stay straight between the ends they have.
+    joints : {"smooth", "g1", "free"}
+        How the pieces of a path meet where there is no corner: as in `reduce`.
     precision : int, optional
         Digits after the point, instead of as many as the tolerance needs; what they move counts in the bound.
     shared : bool
@@ -97,11 +100,13 @@ def lighter(
         raise ParameterError(f"tolerance {tolerance} given; expected a positive number")
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
+    if joints not in JOINTS:
+        raise ParameterError(f"joints {joints!r} given; expected one of {', '.join(JOINTS)}")
     if no_crossings and not isinstance(content, Lines | Drawing):
         raise ParameterError(f"no_crossings given for {document.path}; expected a drawing, a map or a track")
     if ground and not all(place.units == "degrees" for place in places):
         raise ParameterError(f"metres on the ground given for {document.path}; expected a map or a track in degrees")
-    wanted = _Wanted(effort, corners, lines, shared, no_crossings, even_if_longer, ground)
+    wanted = _Wanted(effort, corners, lines, joints, shared, no_crossings, even_if_longer, ground)
     scales = [MOST if ground else place.scale for place in places]
     grid = None if precision is None else 10.0**-precision / math.sqrt(2)
     accuracy = {i: grid or ROUNDED * tolerance / scales[i] for i in free}
@@ -156,6 +161,7 @@ class _Wanted(NamedTuple):
     effort: str
     corners: bool
     lines: bool
+    joints: str
     shared: bool
     no_crossings: bool
     even_if_longer: bool
@@ -170,7 +176,7 @@ def _curves(
     given = [Curve(_cubics(document, i), ring, halved[i]) for i, ring in zip(some, closed, strict=True)]
     angle = CORNER if wanted.corners else None
     found: dict[int, Found] = {}
-    new = bent(given, tolerance, effort=wanted.effort, angle=angle, lines=wanted.lines)
+    new = bent(given, tolerance, effort=wanted.effort, angle=angle, lines=wanted.lines, joints=wanted.joints)
     for i, ring, each in zip(some, closed, new, strict=True):
         if each:
             t = breaks_by_length(each.nets, (0.0, float(len(each.nets))), ring)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
+from knotwork.errors import ParameterError
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -33,6 +34,29 @@ def increasing(lengths: Array, closed: bool = False, start: float = 0.0) -> Arra
         while i < len(t) and t[i] <= t[i - 1]:
             t[i] = np.nextafter(t[i - 1], np.inf)
             i += 1
+    return t
+
+
+def apart(t: Array) -> Array:
+    """Return breaks that increase, moved to the next floats where they do not; the first and the last one stay.
+
+    Raises
+    ------
+    ParameterError
+        If there are not enough floats between them.
+    """
+    if (t[1:] > t[:-1]).all():
+        return t
+    a, b = t[0], t[-1]
+    for i in range(1, len(t)):
+        t[i] = max(t[i], np.nextafter(t[i - 1], np.inf))
+    t[-1] = b
+    for i in range(len(t) - 2, -1, -1):
+        t[i] = min(t[i], np.nextafter(t[i + 1], -np.inf))
+    if t[0] != a:
+        raise ParameterError(
+            f"{len(t) - 1} pieces do not fit into [{a}, {b}]: expected a longer domain, or one nearer 0"
+        )
     return t
 
 

@@ -25,6 +25,7 @@ DISTANCES = ("parametric", "geometric")
 FORMS = ("spline", "bezier", "polyline")
 EFFORTS = ("fast", "normal", "best")
 CROSSINGS = ("none-new", "allow")
+JOINTS = ("smooth", "g1", "free")
 SMALL = ("keep", "drop")
 METHODS = (None, "lyche-morken")
 
@@ -97,6 +98,7 @@ def reduce(
     keep: Kept = None,
     ends: int | tuple[int | None, int | None] | None = 0,
     crossings: str = "none-new",
+    joints: str = "smooth",
     small: str = "keep",
     method: str | None = None,
     progress: Progress | None = None,
@@ -129,9 +131,14 @@ def reduce(
         joints where a coordinate turns back.
     ends : int, None, or a pair of them
         At clamped ends, how many derivatives stay, and the position with 0; None leaves an end free. For shapes, with
-        more than 0 the whole piece at the end stays.
+        more than 0 the whole piece at the end stays; of closed ones, that where they close.
     crossings : "none-new" or "allow"
         For shapes: whether the result may cross itself where the original does not.
+    joints : "free", "smooth" or "g1"
+        Of Bézier pieces, how they meet. "smooth": both handles are on one line (G1) where the curve has no corner, as
+        long as that costs no piece. "g1": at more pieces everywhere but at corners, which stay: joints of a curve whose
+        tangent turns by more than 10 degrees; the vertices of a polyline only if `keep` says so. A bounded search, so
+        that a joint may be left. "free": as they come.
     small : "keep" or "drop"
         What becomes of closed curves smaller than the tolerance: with "drop" they may become a single point, with
         "keep" three control points or more.
@@ -175,12 +182,16 @@ def reduce(
     require_spline(spline, "reduce", "fit takes points")
     _require_one_of(distance=(distance, DISTANCES), form=(form, FORMS), effort=(effort, EFFORTS))
     _require_one_of(crossings=(crossings, CROSSINGS), small=(small, SMALL), method=(method, METHODS))
+    _require_one_of(joints=(joints, JOINTS))
+    if form != "bezier" and joints != JOINTS[0]:
+        raise ParameterError(f"joints {joints!r} given, and form {form!r}; joints are those of Bézier pieces")
     if distance == "geometric":
         from knotwork.removal.shapes.reducing import Wanted, reduce_shape
 
         if method is not None:
             raise ParameterError(f"method {method!r} given; it compares equal parameters")
-        return reduce_shape(spline, tolerance, form, Wanted(degree, effort, keep, ends, crossings, small, progress))
+        wanted = Wanted(degree, effort, keep, ends, crossings, small, progress, joints)
+        return reduce_shape(spline, tolerance, form, wanted)
     if form != "spline":
         raise ParameterError(f"form {form!r} given; at equal parameters the result is a 'spline'")
     spline = _raised(spline, degree)

@@ -27,6 +27,7 @@ def fit(
     keep: Any = None,
     ends: int | tuple[int | None, int | None] | None = 0,
     crossings: str = "none-new",
+    joints: str = "smooth",
     small: str = "keep",
     progress: Progress | None = None,
 ) -> Reduction:
@@ -46,7 +47,7 @@ def fit(
         Whether the curve is closed; by default it is where the last point is the first.
     distance : {"parametric", "geometric"}, optional
         By default "geometric", for points have no parametrisation to keep.
-    form, effort, keep, ends, crossings, small, progress
+    form, effort, keep, ends, crossings, joints, small, progress
         As in `reduce`.
 
     Returns
@@ -88,7 +89,7 @@ def fit(
     how = distance or ("geometric" if parameters is None else "parametric")
     return reduce(
         polyline, tolerance, distance=how, form=form, degree=1 if form == "polyline" else degree, effort=effort,
-        keep=keep, ends=ends, crossings=crossings, small=small, progress=progress,
+        keep=keep, ends=ends, crossings=crossings, joints=joints, small=small, progress=progress,
     )  # fmt: skip
 
 

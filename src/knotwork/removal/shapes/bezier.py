@@ -20,14 +20,15 @@ from knotwork.removal.shapes.search import Effort, Found, Lot, Search
 
 #: all, where removal is for results of any size
 ALL = 1 << 40
-_NORMAL = Effort(width=2, steps=16, few=0, few_curved=32, rounds=6, backward=False, simple=True)
+_NORMAL = Effort(width=2, steps=16, few=0, few_curved=32, rounds=6, backward=False, simple=True, smooth=4)
 _BEST = _NORMAL._replace(steps=24, few=ALL, few_curved=ALL)
 #: ways to search, of which the one that finds least counts
 EFFORTS = {
-    "fast": (_NORMAL._replace(width=1, few_curved=0),),
+    "fast": (_NORMAL._replace(width=1, few_curved=0, smooth=2),),
     "normal": (_NORMAL,),
     "best": (_BEST, _BEST._replace(width=3), _BEST._replace(backward=True)),
 }
+JOINTS = ("smooth", "g1", "free")
 #: a closed curve is opened where it turns most at this many times the tolerance
 SCALE = 4.0
 #: tolerances below this part of the largest coordinate leave every curve as it is
@@ -64,6 +65,8 @@ class Curves(NamedTuple):
     #: whether the joint before each piece, and the end of each curve, stays
     hard: Array
     start: Array
+    #: the direction at each of those joints, in tolerances; NaN at a corner, 0 where there is none
+    directions: Array
     #: the tolerance in each component; what squares of components count; the largest distance by that metric
     unit: Array
     metric: Array
@@ -88,8 +91,8 @@ class Curves(NamedTuple):
 
 def reduce_bezier(
     nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, lines: bool = False,
-    keep: Any = (), effort: str = "normal", crossings: str = "none-new", rational: bool = False, degree: int = 3,
-    progress: Progress | None = None,
+    keep: Any = (), effort: str = "normal", crossings: str = "none-new", joints: str = "smooth", rational: bool = False,
+    degree: int = 3, progress: Progress | None = None,
 ) -> Pieces:  # fmt: skip
     """Return few cubic pieces within a distance of each curve, or quadratic ones.
 
@@ -115,6 +118,9 @@ def reduce_bezier(
     crossings : {"none-new", "allow"}
         Whether to avoid self-crossings of plane curves that they do not have. Looked for in chords of neighbouring
         pieces: not a proof.
+    joints : {"smooth", "g1", "free"}
+        Whether joints are made smooth (G1) where the curve has no corner: if that costs no piece; at more pieces, so
+        that all are but for some that resist; or not. Of quadratic pieces they are free.
     rational : bool
     degree : {3, 2}
         Of the new pieces.
@@ -138,8 +144,12 @@ def reduce_bezier(
     -----
     Bounded: see `near`. Scaling by powers of two and moving the origin exactly change nothing else.
     """
+    if joints == "g1":
+        if degree != 3:
+            raise ParameterError(f"joints 'g1' given, and degree {degree}; only cubic pieces have handles to turn")
+        angle = corners.CORNER if angle is None and nets.shape[1] > 2 else angle
     given = prepared(nets, at, tolerance, closed, angle, lines, keep, rational)
-    how = efforts(effort, crossings)
+    how = efforts(effort, crossings, joints if degree == 3 else "free")
     nets, at = given.nets, given.at
     if not given.possible:
         return _nothing(len(at) - 1, degree, nets.shape[2])
@@ -160,13 +170,18 @@ def reduce_bezier(
     return _without(result, bad) if bad.any() else result
 
 
-def efforts(effort: str, crossings: str) -> tuple[Effort, ...]:
+def efforts(effort: str, crossings: str, joints: str) -> tuple[Effort, ...]:
     """Return the ways to search, or raise if an option is not known."""
     if effort not in EFFORTS:
         raise ParameterError(f"effort {effort!r} given; expected one of {', '.join(EFFORTS)}")
     if crossings not in ("none-new", "allow"):
         raise ParameterError(f"crossings {crossings!r} given; expected 'none-new' or 'allow'")
-    return tuple(e._replace(simple=crossings == "none-new") for e in EFFORTS[effort])
+    if joints not in JOINTS:
+        raise ParameterError(f"joints {joints!r} given; expected one of {', '.join(JOINTS)}")
+    simple, smooth = crossings == "none-new", 0 if joints == "free" else 1
+    return tuple(
+        e._replace(simple=simple, smooth=smooth * e.smooth, everywhere=joints == "g1") for e in EFFORTS[effort]
+    )
 
 
 def prepared(
@@ -189,6 +204,7 @@ def prepared(
     F = _scaled(nets, exponent, rational)
     unit = np.ldexp(unit, -exponent)
     hard, start = np.zeros(len(F) + count, np.int8), np.zeros(count, np.int64)
+    directions = np.zeros((len(F) + count, d))
     possible = bool((unit >= FINEST).all()) and len(nets) > 0
     if possible:
         unit = np.minimum(unit, 2.0**40)
@@ -197,12 +213,16 @@ def prepared(
         a, b = np.zeros(d), np.zeros(d)
         if angle is not None:
             corners.corners(F, at, per, math.cos(math.radians(angle)), hard, a, b)
+        # a corner that need not stay is one all the same; vertices of a polyline are meant as points of a smooth curve
+        sharp = angle if angle is not None else corners.CORNER if F.shape[1] > 2 else 180.0
+        cosine = math.cos(math.radians(sharp))
+        corners.directions(F, at, per, closed, cosine, directions, (a, b))
         if lines:
             corners.lines(F, at, per, hard, a, b)
         if len(keep):
             _keep(hard, np.asarray(keep, np.int64), at, start, closed)
     metric, reach = (1 / unit**2 if possible else unit, 1.0) if each else (np.ones(d), float(unit[0]))
-    return Curves(F, at, hard, start, unit, metric, reach, exponent, rational, each, possible)
+    return Curves(F, at, hard, start, directions, unit, metric, reach, exponent, rational, each, possible)
 
 
 def scaled_by(nets: Array, rational: bool) -> int:
@@ -277,12 +297,12 @@ def searched(
     own = np.repeat(np.arange(len(parts)), parts)  # the curve of each part
     ends = np.append(np.concatenate([np.zeros(0, np.int64), *(c[:-1] for c in cuts)]), len(F))
     sizes = np.diff(ends)
-    more = rational or q > degree
+    more = rational or q > degree or (q == 1 and efforts[0].everywhere)
     allowed = np.where(sizes > 0, ALLOWED * (sizes + 4), 0) if more else np.maximum(sizes - 1, 0)
     most = counted(F, ends, 1 / unit, extent(d))
     kind = Search if degree == 3 else QuadraticSearch
     search = kind(most + most // 2 + 64, int(allowed.max(initial=0)), unit, given.metric, q, rational)
-    lot = Lot(F, ends, given.hard, ends[:-1] + own, given.target()[own], allowed)
+    lot = Lot(F, ends, given.hard, ends[:-1] + own, given.directions, given.target()[own], allowed)
     found, result, i = search.fewest(lot, efforts, progress), [], 0
     for c in cuts:
         some, i = found[i : i + len(c) - 1], i + len(c) - 1

@@ -6,10 +6,14 @@ import math
 
 from knotwork.arithmetic.kernel import kernel
 
+#: a joint of a curve is a corner where its tangent turns by more than this, in degrees
+CORNER = 10.0
 #: a straight run of that many units is a line
 LONG = 4.0
 #: part of the first piece by which the others may be off its line, for the rounding of their points
 LEVEL = 1e-9
+#: tolerances over which the direction of a polyline is seen
+REACH = 4.0
 #: pieces looked at on each side of a joint, at most
 LOOK = 64
 
@@ -90,6 +94,39 @@ def sharpest(F, at, per, closed, reach, starts, a, b):
                 if cosine < least:
                     least = cosine
                     starts[curve] = i - lo
+
+
+@kernel(inline=False)
+def directions(F, at, per, closed, cosine, out, both):
+    """Write the direction of curves at their joints, midway between those on both sides; NaN at corners, 0 at ends.
+
+    At a vertex of a closed polyline it is seen at REACH units.
+    """
+    a, b = both
+    for curve in range(len(at) - 1):
+        lo, hi = at[curve], at[curve + 1]
+        for i in range(lo, hi + 1):
+            end = i in (lo, hi)
+            if end and not closed[curve]:
+                continue
+            tangent(F[i - 1 if i > lo else hi - 1], True, per, a)
+            tangent(F[i if i < hi else lo], False, per, b)
+            corner = turned(a, b) < cosine
+            if F.shape[1] == 2 and closed[curve] and not corner and end:
+                toward(F, lo, hi, lo, -1, REACH, per, a)
+                toward(F, lo, hi, lo, 1, REACH, per, b)
+                for c in range(len(a)):
+                    a[c] = -a[c]
+            one, other = 0.0, 0.0
+            for c in range(len(a)):
+                one += a[c] * a[c]
+                other += b[c] * b[c]
+            one, other = math.sqrt(one), math.sqrt(other)
+            for c in range(len(a)):
+                if corner:
+                    out[i + curve, c] = math.nan
+                elif one > 0 and other > 0:
+                    out[i + curve, c] = a[c] / one + b[c] / other
 
 
 @kernel(inline=False)

@@ -12,8 +12,6 @@ from knotwork.removal.features import end_orders
 from knotwork.removal.shapes import corners
 from knotwork.spline import Spline
 
-#: a joint of a curve is a corner where its tangent turns by more than this, in degrees
-CORNER = 10.0
 WORDS = ("corners", "lines", "extrema")
 #: part of a piece's size below which a step of a coordinate is rounding
 LEVEL = 1e-9
@@ -35,14 +33,12 @@ def shape_features(curve: Spline, pieces: Array, keep: Any, ends: Any, closed: b
     angle: float | None = None
     lines, count = False, len(pieces)
     joints: list[Array] = [_at_ends(curve, count, ends, closed)]
-    if keep is None:
-        return Features(angle, lines, joints[0][(joints[0] > 0) & (joints[0] < count)])
     breaks = curve.space.breaks
-    for each in [keep] if isinstance(keep, str) else list(keep):
+    for each in [keep] if isinstance(keep, str) else list(keep or ()):
         if not isinstance(each, str):
             joints.append(_between(curve, breaks, each))
         elif each == "corners":
-            angle = CORNER
+            angle = corners.CORNER
         elif each == "lines":
             lines = pieces.shape[1] > 2  # of a polyline every edge is one
         elif each == "extrema":
@@ -65,12 +61,15 @@ def turning(pieces: Array, rational: bool, angle: float | None) -> Array:
 
 
 def _at_ends(curve: Spline, count: int, ends: Any, closed: bool) -> Array:
-    """Return the joints that keep the pieces at the ends, where derivatives there are to stay."""
+    """Return the joints that keep the pieces at the ends, where derivatives there are to stay.
+
+    A closed curve ends where it closes; that is a place like others unless they are.
+    """
     orders = end_orders(ends)
-    if closed or not any(orders):
+    if not any(orders):
         return np.zeros(0, np.int64)
     _require_pieces(curve, "ends")
-    return np.array([1 if orders[0] else 0, count - 1 if orders[1] else count])
+    return np.array([0, 1 if orders[0] else 0, count - 1 if orders[1] else count])
 
 
 def _between(curve: Spline, breaks: Array, each: Any) -> Array:

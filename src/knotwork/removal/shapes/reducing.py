@@ -11,7 +11,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import joined
-from knotwork.geometry.lengths import increasing
+from knotwork.geometry.lengths import apart, increasing
 from knotwork.removal.features import end_orders
 from knotwork.removal.result import Progress, Reduction, tell
 from knotwork.removal.shapes.between import Matching
@@ -40,6 +40,7 @@ class Wanted(NamedTuple):
     crossings: str
     small: str
     progress: Progress | None
+    joints: str = "smooth"
 
 
 def reduce_shape(spline: Spline, tolerance: Any, form: str, wanted: Wanted) -> Reduction:
@@ -147,7 +148,7 @@ def _pieces(shapes: Sequence[Shape], degree: int, wanted: Wanted) -> Pieces:
     return reduce_bezier(
         np.concatenate([shape.pieces for shape in shapes]), at, shapes[0].reach, degree=degree,
         closed=[shape.closed for shape in shapes], angle=angle, lines=lines, keep=joints, effort=wanted.effort,
-        crossings=wanted.crossings, rational=shapes[0].curve.rational, progress=wanted.progress,
+        crossings=wanted.crossings, joints=wanted.joints, rational=shapes[0].curve.rational, progress=wanted.progress,
     )  # fmt: skip
 
 
@@ -291,7 +292,9 @@ def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:
     """Return breaks over a domain whose intervals are to each other as lengths; even ones where all lengths are 0."""
     a, b = (float(x) for x in domain)
     t = increasing(lengths, closed)
-    return a + t * ((b - a) / t[-1]) if t[-1] > 0 else np.linspace(a, b, len(lengths) + 1)
+    t = a + t / t[-1] * (b - a) if t[-1] > 0 else np.linspace(a, b, len(lengths) + 1)
+    t[-1] = b
+    return apart(t)
 
 
 def _lower_bound(shape: Shape, degree: int) -> int:

@@ -54,6 +54,20 @@ class Frame(NamedTuple):
     rest: Array
 
 
+class Bonds(NamedTuple):
+    """Handles that are bound in a window of pieces: see `bonds`."""
+
+    #: of each joint of the window, whether its handles are on one line; at its ends, on the line they are on
+    on: Array
+    #: lengths of the handles at joints, one by the other; those at the ends of the window; directions to put them in
+    ratio: Array
+    ends: Array
+    given: Array
+    #: a direction; a block of equations
+    e: Array
+    block: Array
+
+
 class Room(NamedTuple):
     """Working space of the search, used over and over."""
 
@@ -87,6 +101,7 @@ class Room(NamedTuple):
     #: a polyline
     chords: Array
     frame: Frame
+    bonds: Bonds
     #: a tuple as long as a point
     D: Any
 
@@ -107,14 +122,20 @@ def frame(pieces: int, d: int) -> Frame:
     )  # fmt: skip
 
 
+def bonds(d: int) -> Bonds:
+    """Return space for the bonds of a window."""
+    ends = (np.zeros((2, d)), np.zeros((2, d)), np.zeros(d), np.zeros((d, d)))
+    return Bonds(np.zeros(WINDOW + 1, np.int8), np.zeros(WINDOW + 1), *ends)
+
+
 def room(count: int, d: int, degree: int = 3, pieces: int = 0) -> Room:
     """Return working space for windows of up to `count` samples in d dimensions; or frames of up to `pieces`."""
     window = max(pieces, WINDOW)
-    unknowns, band = (3 * window + 1) * d, 4 * d
+    unknowns, band = (3 * window + 1) * d, (4 if pieces else 5) * d
     return Room(
         np.zeros((3, unknowns, band)), np.zeros((3, unknowns)), np.zeros((window, d, d, 7)), np.zeros((window, d, 4)),
         np.zeros((unknowns, band)), np.zeros(unknowns),
         np.zeros((3, window, 4, d)), np.zeros((3, count)), np.zeros(count), np.zeros(count, np.int64),
         np.zeros(window + 1), np.zeros(d), np.zeros((4, d)), np.zeros(4), np.zeros((3, 3)), np.zeros((3, d)),
-        np.zeros((degree + 1, d + 1)), np.zeros((512, d)), frame(pieces, d), extent(d),
+        np.zeros((degree + 1, d + 1)), np.zeros((512, d)), frame(pieces, d), bonds(d), extent(d),
     )  # fmt: skip

@@ -10,20 +10,20 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.result import Progress, part_of, tell
 from knotwork.removal.shapes import certificate, matching
-from knotwork.removal.shapes.greedy import as_piece, greedy, whole
+from knotwork.removal.shapes.greedy import greedy
+from knotwork.removal.shapes.joints import smoothed
 from knotwork.removal.shapes.matching import Pair, path_square
+from knotwork.removal.shapes.output import written
 from knotwork.removal.shapes.rematching import refined
 from knotwork.removal.shapes.removing import removed
 from knotwork.removal.shapes.repair import FORCED, forced, interpolated, repaired
 from knotwork.removal.shapes.room import Room, Samples, room, samples
-from knotwork.removal.shapes.samples import finely, merged, point
+from knotwork.removal.shapes.samples import finely, merged
 
 #: how often a curve is begun anew, with what was learned about its samples
 ATTEMPTS = 3
 #: pieces of curves that are searched in one call, about
 SOME = 1 << 13
-#: part of its length by which a line may be off, for the rounding of its points
-LEVEL = 1e-9
 
 
 class Effort(NamedTuple):
@@ -42,6 +42,10 @@ class Effort(NamedTuple):
     backward: bool
     #: whether new self-crossings are avoided
     simple: bool
+    #: pieces fitted together to make a joint smooth, at most; 0: joints stay as they come
+    smooth: int = 0
+    #: whether there may be more pieces so that all are
+    everywhere: bool = False
     #: pieces of a smooth curve on each side of a knot that are fitted again
     reach: int = 0
     #: pieces of a smooth curve that are in their place at once: what goes or comes moves only those behind it
@@ -65,6 +69,8 @@ class Lot(NamedTuple):
     at: Array
     hard: Array
     hard_at: Array
+    #: the direction of the curve at each joint, in tolerances; NaN at a corner, 0 where there is none
+    directions: Array
     #: the square of the largest distance that is allowed to each, and how many pieces
     target: Array
     most: Array
@@ -75,6 +81,7 @@ class Task(NamedTuple):
 
     F: Array
     hard: Array
+    directions: Array
     target: float
     most: int
 
@@ -107,6 +114,9 @@ class Space(NamedTuple):
     places: Array
     #: the path as it was before repair
     before: Array
+    #: whether the handles at each joint, of the pieces before it and behind it, are bound; whether they are to be
+    bound: Array
+    wanted: Array
 
 
 class Answers(NamedTuple):
@@ -118,74 +128,6 @@ class Answers(NamedTuple):
     square: Array
     pieces: Array
     nodes: Array
-
-
-@kernel
-def straight(S, j, end, D):
-    """Tell whether the samples from one to another are on a line, but for rounding."""
-    chord = 0.0
-    for c in range(len(D)):
-        chord += (S.y[end, c] - S.y[j, c]) * (S.y[end, c] - S.y[j, c])
-    for i in range(j, end):
-        w = (S.arc[i] - S.arc[j]) / (S.arc[end] - S.arc[j]) if S.arc[end] > S.arc[j] else 0.0
-        away = 0.0
-        for c in range(len(D)):
-            off = S.y[i, c] - S.y[j, c] - w * (S.y[end, c] - S.y[j, c])
-            away += off * off + S.a[i, c] * S.a[i, c]
-        if away > LEVEL * LEVEL * chord:
-            return False
-    return True
-
-
-@kernel
-def placed(G, k, out, unit, room):
-    """Write the points of piece k in the units of f; room.p[1] is the first point of f."""
-    for i in range(4):
-        for c in range(len(room.D)):
-            out[k, i, c] = room.p[1, c] + unit[c] * G[k, i, c]
-
-
-@kernel(inline=False)
-def written(F, G, count, S, last, unit, out, room):
-    """Write pieces in the units of f; points at hard samples are those of f.
-
-    What is a piece of f between hard samples is written as that, what is straight as a line.
-    """
-    D, p, n = room.D, room.p, out.shape[1] - 1
-    point(F[0], 0.0, room)
-    for c in range(len(D)):
-        p[1, c] = p[0, c]
-    for k in range(count):
-        placed(G, k, out, unit, room)
-        if out.shape[2] > len(D):
-            for i in range(n + 1):
-                out[k, i, len(D)] = 1
-        if k > 0:
-            for c in range(len(D)):
-                out[k - 1, n, c] = out[k, 0, c]
-    before = -1
-    for j in range(last + 1):
-        if not S.hard[j]:
-            continue
-        i, k = int(S.s[j]), int(S.u[j])
-        if i < len(F):
-            point(F[i], 0.0, room)
-        else:
-            point(F[i - 1], 1.0, room)
-        for c in range(len(D)):
-            if k < count:
-                out[k, 0, c] = p[0, c]
-            if k > 0:
-                out[k - 1, n, c] = p[0, c]
-        if before >= 0 and S.u[j] - S.u[before] == 1:
-            if whole(F, S, before, j, D):
-                as_piece(F[i - 1], out[k - 1], D)
-            elif straight(S, before, j, D):
-                for c in range(len(D)):
-                    side = (out[k - 1, n, c] - out[k - 1, 0, c]) / n
-                    for m in range(1, n):
-                        out[k - 1, m, c] = out[k - 1, 0, c] + side if 2 * m <= n else out[k - 1, n, c] - side
-        before = j
 
 
 @kernel(inline=False)
@@ -245,6 +187,14 @@ def near(task, kind, space, effort):
         if 1 < count <= (effort.few if F.shape[1] == 2 else effort.few_curved):
             count = removed(space.G, S, last, count, room, effort.simple)
         count, nodes, last, end = certified(task, kind, space, end, last, count, effort)
+        if nodes > 0 and effort.smooth > 0:
+            count, state = smoothed(task, kind, space, last, count, effort)
+            if state < 0:
+                return count, -1
+            u, s = S.u[: last + 1], S.s[: last + 1]
+            pair = Pair(F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+            nodes = refined(pair, space.matching, task.target, u, s, space.u, space.s, space.failing)
+            return count, nodes if nodes > 0 else -1
         if nodes != 0:
             return count, nodes
         if end == 0:
@@ -258,10 +208,11 @@ def near_all(lot, first, end, kind, space, effort, found):
     pieces, nodes = 0, 0
     for i in range(first, end):
         F = lot.F[lot.at[i] : lot.at[i + 1]]
-        hard = lot.hard[lot.hard_at[i] : lot.hard_at[i] + len(F) + 1]
+        at, end_at = lot.hard_at[i], lot.hard_at[i] + len(F) + 1
+        task = Task(F, lot.hard[at:end_at], lot.directions[at:end_at], lot.target[i], lot.most[i])
         count, more = 0, 0
         if lot.most[i] > 0:
-            count, more = near(Task(F, hard, lot.target[i], lot.most[i]), kind, space, effort)
+            count, more = near(task, kind, space, effort)
         if more < 0 or pieces + count > len(found.G) or nodes + more > len(found.u):
             return i
         if more > 0:
@@ -294,7 +245,8 @@ class Search:
             samples(count, d), samples(count, d), room(count, d, q, pieces + 8 if smooth else 0),
             certificate.room_for(q, p, d + rational), np.zeros((pieces + 2, 4, d)),
             np.zeros((pieces + 2, p + 1, d + rational)), np.zeros(8 * count), np.zeros(8 * count), np.zeros(count),
-            np.zeros(count), np.zeros((2, count)),
+            np.zeros(count), np.zeros((2, count)), np.zeros((2, pieces + 3), np.int8),
+            np.zeros(pieces + 3, np.int8),
         )  # fmt: skip
 
     def longer(self) -> None:
@@ -356,5 +308,5 @@ def _turned(lot: Lot) -> Lot:
     ends = lot.hard_at + np.diff(lot.at) + 1
     return Lot(
         np.ascontiguousarray(lot.F[::-1, ::-1]), len(lot.F) - lot.at[::-1], lot.hard[::-1].copy(),
-        len(lot.hard) - ends[::-1], lot.target[::-1].copy(), lot.most[::-1].copy(),
+        len(lot.hard) - ends[::-1], -lot.directions[::-1], lot.target[::-1].copy(), lot.most[::-1].copy(),
     )  # fmt: skip

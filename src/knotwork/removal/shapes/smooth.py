@@ -91,7 +91,7 @@ def reduce_smooth(
     if not given.possible:
         return []
     stays = not periodic or _seam_stays(given.nets, given.hard, angle, 1 / given.unit)
-    manners, how = MANNERS[effort], efforts(PIECES[effort], crossings)
+    manners, how = MANNERS[effort], efforts(PIECES[effort], crossings, "free")
     found = searched(given, how, DEGREE, part_of(progress, 0, 1 + len(manners)))[0]
     if not len(found.G):
         if rational or given.nets.shape[1] > DEGREE + 1:
@@ -139,6 +139,7 @@ class SmoothSearch(Search):
     ) -> None:  # fmt: skip
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
         self.F, self.hard, self.progress, self.manner = F, hard, progress, manner
+        self.directions = given.directions
         self.effort = effort._replace(reach=manner.reach, chunk=CHUNK)
         self.G, self.samples, self.room = self.space.G, self.space.samples, self.space.room
         self.target, self.most = float(given.target()[0]), pieces - 8
@@ -168,7 +169,7 @@ class SmoothSearch(Search):
 
     def _proven(self) -> Path | None:
         """Prove what is found, with more knots where that fails."""
-        task = Task(self.F, self.hard, self.target, self.most)
+        task = Task(self.F, self.hard, self.directions, self.target, self.most)
         while True:
             state = certified_smooth(task, self.kind, self.space, self.end, self.last, self.count, self.effort)
             self.count, nodes, self.last, self.end = map(int, state)

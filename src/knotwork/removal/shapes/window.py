@@ -49,10 +49,16 @@ def free(k0, k1, room, tied):
     return len(room.D), (3 * (k1 - k0) + 4 - tied) * len(room.D)
 
 
+@kernel
+def half_band(D):
+    """Return how many entries a row of the band has: a point sees the others of its piece."""
+    return 4 * len(D)
+
+
 @kernel(inline=False)
 def solved(room, state, lo, hi, damping, D):
     """Solve (A + damping) x = b for unknowns lo … hi-1 by Cholesky in the band; tell whether it was definite."""
-    A, L, x, band = room.A, room.L, room.x, 4 * len(D)
+    A, L, x, band = room.A, room.L, room.x, half_band(D)
     largest = 0.0
     for i in range(lo, hi):
         largest = max(largest, A[state, i, 0])
@@ -91,6 +97,12 @@ def moved(G, k0, k1, room, lo, hi, D):
                     G[k, i, c] -= room.x[at]
 
 
+@kernel
+def hopeful(before, worst):
+    """Tell whether CHECK steps have come so much nearer that it is worth to go on."""
+    return worst <= FAR and before - worst >= GAIN * (before - TARGET)
+
+
 @kernel(inline=False)
 def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair, target):
     """Lower Φ by at most `steps` damped Gauss-Newton steps over pieces k0 … k1; return the largest distance.
@@ -106,7 +118,7 @@ def descended(G, k0, k1, S, ja, jb, room, tied, half, steps, fair, target):
         if worst <= target:
             break
         if step > 0 and step % CHECK == 0:
-            if worst > TARGET and (worst > FAR or before - worst < GAIN * (before - TARGET)):
+            if worst > TARGET and not hopeful(before, worst):
                 break
             before = worst
         if not solved(room, state, lo, hi, damping, D):
