@@ -109,7 +109,8 @@ class Kernel:
         """Return the same source with the given names bound to other kernels, in the kernels it calls too."""
         key = frozenset(names.items())
         if key not in self._variants:
-            below = {name: callee.variant(**names) for name, callee in self._callees() if callee._calls(names)}
+            others = ((name, callee) for name, callee in self._callees() if name not in names)
+            below = {name: callee.variant(**names) for name, callee in others if callee._calls(names)}
             self._variants[key] = Kernel(self.source, {**self.names, **below, **names}, self.options["forceinline"])
         return self._variants[key]
 
