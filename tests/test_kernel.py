@@ -503,11 +503,11 @@ def test_a_variant_binds_names_anew(monkeypatch):
     variant = twice.variant(step=down)
     assert variant.plain(3) == 1
     assert variant.digest != twice.digest
-    monkeypatch.setitem(globals(), "twice", twice)
-    both = kernels.kernel(lambda x: twice(x) + step(x))  # noqa: F821
     known = len(kernels.KERNELS)
-    assert both.variant(step=down, twice=up).plain(3) == 6
-    assert len(kernels.KERNELS) == known + 1  # what is replaced is not made anew
+    monkeypatch.setitem(globals(), "again", twice)
+    both = kernels.kernel(lambda x: again(x) + step(x))  # noqa: F821
+    assert both.variant(step=down, again=up).plain(3) == 6
+    assert len(kernels.KERNELS) == known + 2  # what is replaced is not made anew
 
 
 def test_a_kernel_that_moves_to_another_module_is_another(monkeypatch):
