@@ -26,16 +26,32 @@ def half_band_bound(D):
 
 
 @kernel
+def normalised(e, D):
+    """Make a direction as long as 1, or 0 where it has no length; return how long it was."""
+    square = 0.0
+    for c in range(len(D)):
+        square += e[c] * e[c]
+    size = math.sqrt(square)
+    for c in range(len(D)):
+        e[c] = e[c] / size if size > 0 else 0.0
+    return size
+
+
+@kernel
 def handle(G, k, start, room):
     """Write the direction of the handle at the start of piece k, or at its end, to bonds.e; return its length."""
-    square = 0.0
     for c in range(len(room.D)):
         room.bonds.e[c] = G[k, 1, c] - G[k, 0, c] if start else G[k, 3, c] - G[k, 2, c]
-        square += room.bonds.e[c] * room.bonds.e[c]
-    size = math.sqrt(square)
+    return normalised(room.bonds.e, room.D)
+
+
+@kernel
+def handles(G, k, room):
+    """Write the direction of joint k to bonds.e; return how long its handles are along it, before it and behind."""
+    behind, before = handle(G, k, True, room), 0.0
     for c in range(len(room.D)):
-        room.bonds.e[c] = room.bonds.e[c] / size if size > 0 else 0.0
-    return size
+        before += room.bonds.e[c] * (G[k, 0, c] - G[k - 1, 2, c])
+    return before, behind
 
 
 @kernel
@@ -131,10 +147,7 @@ def measured_bound(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
             A[state, i, o] = A[2, i, o] if o < 4 * d and o <= i else 0.0
     for i in range(1, n):
         if room.bonds.on[i]:
-            size_q = handle(G, k0 + i, True, room)
-            size_p = 0.0
-            for c in range(d):
-                size_p += room.bonds.e[c] * (G[k0 + i, 0, c] - G[k0 + i - 1, 2, c])
+            size_p, size_q = handles(G, k0 + i, room)
             joined(3 * i - 1, size_p / size_q if size_q > 0 else 0.0, room, state)
             on_line(3 * i - 1, size, -1, room, state)
     if room.bonds.on[0]:
@@ -158,9 +171,7 @@ def moved_bound(G, k0, k1, room, lo, hi, D):
     n, d, x, ends = k1 - k0 + 1, len(D), room.x, room.bonds.ends
     for i in range(1, n):
         if room.bonds.on[i]:
-            size_q, size_p = handle(G, k0 + i, True, room), 0.0
-            for c in range(d):
-                size_p += room.bonds.e[c] * (G[k0 + i, 0, c] - G[k0 + i - 1, 2, c])
+            size_p, size_q = handles(G, k0 + i, room)
             room.bonds.ratio[i] = stretched(size_p, -x[(3 * i - 1) * d]) / size_q if size_q > 0 else 0.0
     size = handle(G, k0, True, room)
     room.bonds.ratio[0] = stretched(size, -x[d]) / size if size > 0 else 0.0

@@ -3,24 +3,11 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.repair import inserted
+from knotwork.removal.shapes.repair import cut, inserted
 
 #: part of the pieces at a joint, and tolerances of them, that a piece in its place takes at most
 THIRD = 1 / 3
 REACH = 3.0
-
-
-@kernel(inline=False)
-def cut(G, source, t, k, room):
-    """Write the parts of piece `source` before and behind t to pieces k and k + 1 (de Casteljau)."""
-    r = 1 - t
-    for c in range(len(room.D)):
-        p0, p1, p2, p3 = G[source, 0, c], G[source, 1, c], G[source, 2, c], G[source, 3, c]
-        a0, a1, a2 = r * p0 + t * p1, r * p1 + t * p2, r * p2 + t * p3
-        b0, b1 = r * a0 + t * a1, r * a1 + t * a2
-        middle = r * b0 + t * b1
-        G[k, 0, c], G[k, 1, c], G[k, 2, c], G[k, 3, c] = p0, a0, b0, middle
-        G[k + 1, 0, c], G[k + 1, 1, c], G[k + 1, 2, c], G[k + 1, 3, c] = middle, b1, a2, p3
 
 
 @kernel(inline=False)

@@ -1,7 +1,8 @@
 """Joints made smooth (G1) where the original is, as long as the pieces stay near it, which is proven on the spot.
 
 A joint that stays, or where a closed curve was opened, gets the direction of the original there; between them,
-handles are put on one line and the pieces around are fitted again. No joint moves that has to stay, no piece is added.
+handles are put on one line and the pieces around are fitted again. No joint moves that has to stay, and no piece is
+added unless joints are to be smooth everywhere.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ import math
 from typing import NamedTuple
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.bonds import fitted_bound, handle
+from knotwork.knots import last_at_most
+from knotwork.removal.shapes.bonds import fitted_bound, handle, normalised
 from knotwork.removal.shapes.corners import tangent
 from knotwork.removal.shapes.crossings import tangled
 from knotwork.removal.shapes.extra import closed_up, in_place, in_two
@@ -56,11 +58,10 @@ def given_direction(task, kind, space, j, last, start):
     """
     S, out, e, D = space.samples, space.out, space.room.bonds.e, space.room.D
     row = task.directions[int(S.s[j])]
-    known = 0.0
     for c in range(len(D)):
         e[c] = row[c]
-        known += row[c] * row[c]
-    if not known > 0:  # a corner, which is NaN, or an end
+    size = normalised(e, D)
+    if not size > 0:  # a corner, which is NaN, or an end
         return False
     if start:
         a = b = last if j == 0 else j
@@ -74,25 +75,14 @@ def given_direction(task, kind, space, j, last, start):
             b += 1
     if stays(task.F, S, a, b, D):
         tangent(out[int(S.u[a])], start, kind.per, e)
-        known = 0.0
-        for c in range(len(D)):
-            known += e[c] * e[c]
-    for c in range(len(D)):
-        e[c] = e[c] / math.sqrt(known) if known > 0 else 0.0
-    return known > 0
+        size = normalised(e, D)
+    return size > 0
 
 
 @kernel(inline=False)
 def before(S, chain, u):
-    """Return the last sample of a chain, but for its end, that is matched with u or what is before it: halving."""
-    a, b = chain.ja, chain.jb
-    while b - a > 1:
-        m = (a + b) // 2
-        if S.u[m] <= u:
-            a = m
-        else:
-            b = m
-    return a
+    """Return the last sample of a chain, but for its end, that is matched with u or what is before it."""
+    return last_at_most(S.u, chain.ja, chain.jb - 1, u)
 
 
 @kernel(inline=False)
@@ -104,12 +94,9 @@ def around(S, chain, k, room):
         a -= 1
     while b < chain.jb and S.arc[b] - S.arc[j] < NEAR:
         b += 1
-    size = 0.0
     for c in range(len(room.D)):
         room.bonds.e[c] = S.y[b, c] - S.y[a, c]
-        size += room.bonds.e[c] * room.bonds.e[c]
-    for c in range(len(room.D)):
-        room.bonds.e[c] = room.bonds.e[c] / math.sqrt(size) if size > 0 else 0.0
+    normalised(room.bonds.e, room.D)
 
 
 @kernel(inline=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from knotwork.arithmetic.kernel import kernel
+from knotwork.knots import last_at_most
 from knotwork.removal.shapes.piece import by_length, fitted_piece
 from knotwork.removal.shapes.residuals import FAIR
 from knotwork.removal.shapes.samples import point
@@ -98,7 +99,7 @@ def split(G, S, last, j, k, count, room, steps):
         m += 1
     if jb - ja < 2:
         m = j
-        halved(G, k, room)
+        cut(G, k, 0.5, k, room)
         for i in range(ja + 1, jb):
             S.u[i] = k + 2 * (S.u[i] - k)
         return
@@ -114,14 +115,15 @@ def split(G, S, last, j, k, count, room, steps):
 
 
 @kernel(inline=False)
-def halved(G, k, room):
-    """Write the two halves of piece k to it and the next one (de Casteljau)."""
+def cut(G, source, t, k, room):
+    """Write the parts of piece `source` before and behind t to pieces k and k + 1 (de Casteljau)."""
+    r = 1 - t
     for c in range(len(room.D)):
-        p0, p1, p2, p3 = G[k, 0, c], G[k, 1, c], G[k, 2, c], G[k, 3, c]
-        a0, a1, a2 = (p0 + p1) / 2, (p1 + p2) / 2, (p2 + p3) / 2
-        b0, b1 = (a0 + a1) / 2, (a1 + a2) / 2
-        middle = (b0 + b1) / 2
-        G[k, 1, c], G[k, 2, c], G[k, 3, c] = a0, b0, middle
+        p0, p1, p2, p3 = G[source, 0, c], G[source, 1, c], G[source, 2, c], G[source, 3, c]
+        a0, a1, a2 = r * p0 + t * p1, r * p1 + t * p2, r * p2 + t * p3
+        b0, b1 = r * a0 + t * a1, r * a1 + t * a2
+        middle = r * b0 + t * b1
+        G[k, 0, c], G[k, 1, c], G[k, 2, c], G[k, 3, c] = p0, a0, b0, middle
         G[k + 1, 0, c], G[k + 1, 1, c], G[k + 1, 2, c], G[k + 1, 3, c] = middle, b1, a2, p3
 
 
@@ -156,16 +158,7 @@ def repaired(G, S, last, count, most, places, room, effort):
     """
     done = -1
     for n in range(len(places)):
-        s = places[n]
-        j = 0
-        i, m = 0, last
-        while m - i > 1:
-            j = (i + m) // 2
-            if S.s[j] <= s:
-                i = j
-            else:
-                m = j
-        j = i
+        j = last_at_most(S.s, 0, last - 1, places[n])
         k = min(int((S.u[j] + S.u[j + 1]) / 2), count - 1)
         if k == done:
             continue

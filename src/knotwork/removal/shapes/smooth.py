@@ -8,7 +8,6 @@ near. A closed curve is turned at last, so that the place where it was opened is
 from __future__ import annotations
 
 import itertools
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,6 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import extent
 from knotwork.geometry.lengths import SHORTEST
 from knotwork.removal.result import Progress, part_of, tell
-from knotwork.removal.shapes import corners
 from knotwork.removal.shapes.bezier import ALLOWED, Curves, as_pieces, efforts, prepared, searched
 from knotwork.removal.shapes.frame import DEGREE, descended_frame, framed, netted
 from knotwork.removal.shapes.knots import mended, thinned, tightened
@@ -90,7 +88,7 @@ def reduce_smooth(
     given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational)
     if not given.possible:
         return []
-    stays = not periodic or _seam_stays(given.nets, given.hard, angle, 1 / given.unit)
+    stays = not periodic or _seam_stays(given, angle)
     manners, how = MANNERS[effort], efforts(PIECES[effort], crossings, "free")
     found = searched(given, how, DEGREE, part_of(progress, 0, 1 + len(manners)))[0]
     if not len(found.G):
@@ -340,13 +338,6 @@ def _points(G: Array, u: Array) -> Array:
     return result
 
 
-def _seam_stays(F: Array, hard: Array, angle: float | None, per: Array) -> bool:
+def _seam_stays(given: Curves, angle: float | None) -> bool:
     """Tell whether the place where a closed curve was opened is a corner, or kept."""
-    if hard[0] or hard[-1]:
-        return True
-    if angle is None:
-        return False
-    a, b = np.zeros(len(per)), np.zeros(len(per))
-    corners.tangent(F[-1], True, per, a)
-    corners.tangent(F[0], False, per, b)
-    return bool(corners.turned(a, b) < math.cos(math.radians(angle)))
+    return bool(given.hard[0] or given.hard[-1] or (angle is not None and np.isnan(given.directions[0]).any()))
