@@ -60,4 +60,6 @@ if __name__ == "__main__":
             print(
                 f"{form:9} {done.made:,} of {done.given:,} in {took:.1f} s: {done.given / took:,.0f} a second, ", end=""
             )
-            print(f"{cpu:.0f} µs of a processor each, {used.ru_maxrss / 1024:.0f} MB a worker at most")
+            own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+            print(f"{cpu:.0f} µs of a processor each, {used.ru_maxrss / 1024:.0f} MB a worker at most, ", end="")
+            print(f"{own:.0f} MB for what asks them")

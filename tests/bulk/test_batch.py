@@ -20,6 +20,7 @@ from knotwork.bulk.blame import hunt
 from knotwork.bulk.parts import Bites, Job, Tally, begun, marked
 from knotwork.bulk.processes import run
 from knotwork.errors import FileError, ParameterError
+from knotwork.files.lighter import lighter
 
 pa = pytest.importorskip("pyarrow", reason="pyarrow is not installed")
 pq = pytest.importorskip("pyarrow.parquet")
@@ -321,12 +322,45 @@ def test_many_are_as_each_alone() -> None:
     assert flat[0].spline.points.tolist() == kw.flatten(curves[0], 0.1).points.tolist()
 
 
+@pytest.mark.slow
+def test_joints_are_as_asked_for_with_any_number_of_workers(tmp_path: Path) -> None:
+    t = np.linspace(0, 3, 14)
+    waves = [np.column_stack([t, np.sin(4 * t + i) * (1 + i)]).tolist() for i in range(6)]
+    rows = table(tmp_path / "tracks.parquet", waves)
+    drawing = "M0 0C1 4 3 4 4 0C5 -4 7 -4 8 0C9 3 11 3 12 0C13 -1 14 -2 16 1"
+    picture = tmp_path / "wave.svg"
+    picture.write_text(f'<svg xmlns="http://www.w3.org/2000/svg"><path d="{drawing}"/></svg>')
+    nets = {}
+    for joints in ("smooth", "g1", "free"):
+        how = {"tolerance": 0.2, "joints": joints}
+        for task in ("reduce", "fit"):
+            folder = tmp_path / f"{task}-{joints}"
+            done = kw.batch(task, rows, folder, workers=0, part=2, form="bezier", **how)
+            assert (done.made, done.failed) == (6, 0)
+            nets[task, joints] = pq.read_table(sorted(folder.glob("*.parquet")))["points"].to_pylist()
+        for points, net in zip(waves, nets["reduce", joints], strict=True):
+            line = kw.curve(points, degree=1)
+            alone = kw.reduce(line, 0.2, distance="geometric", form="bezier", joints=joints).spline
+            assert np.array_equal(alone.points, net)
+        kw.batch("reduce", picture, tmp_path / joints, workers=0, **how)
+        drawn = lighter(kw.open(picture), 0.2, joints=joints).document
+        assert (tmp_path / joints / "wave.svg").read_bytes() == drawn.packed(picture)[0]
+    assert nets["reduce", "free"] != nets["reduce", "smooth"] != nets["reduce", "g1"] == nets["fit", "g1"]
+    for workers in (1, 2):
+        folder = tmp_path / f"with-{workers}"
+        kw.batch("reduce", rows, folder, workers=workers, part=2, form="bezier", tolerance=0.2, joints="g1")
+        assert content(folder) == content(tmp_path / "reduce-g1")
+
+
 def test_what_makes_no_sense_is_told_before_any_work(tmp_path: Path) -> None:
     for task, how, message in (
         ("remove", {}, "task 'remove' given; expected one of reduce"),
         ("reduce", {}, "no tolerance given"),
         ("flatten", {"tolerance": 1, "form": "bezier"}, "option 'form' given; 'flatten' takes tolerance"),
         ("reduce", {"tolerance": 1, "workers": -1}, "workers -1 given"),
+        ("reduce", {"tolerance": 1, "joints": "round"}, "joints 'round' given; expected one of smooth"),
+        ("fit", {"tolerance": 1, "joints": "g1", "form": "spline"}, "joints 'g1' given; they are those of Bézier"),
+        ("reduce", {"tolerance": 1, "joints": "g1", "distance": "parametric"}, "joints 'g1' given; they are those"),
         ("convert", {"time_limit": 0}, "time_limit 0 given; expected seconds"),
         ("convert", {"time_limit": 1, "workers": 0}, "only other processes can be stopped"),
     ):

@@ -18,6 +18,7 @@ from knotwork.geometry import flatten
 from knotwork.geometry.boxes import extent
 from knotwork.geometry.lengths import linear
 from knotwork.removal import fit, reduce
+from knotwork.removal.faces import JOINTS
 from knotwork.removal.shapes.reducing import reduce_shapes
 from knotwork.removal.tolerance import Relative
 from knotwork.spline import Spline
@@ -42,6 +43,7 @@ def reduce_curves(
     form: str | None = None,
     effort: str = "normal",
     keep: Any = None,
+    joints: str = "smooth",
     no_crossings: bool = False,
 ) -> list[Outcome]:
     """Return splines with few knots within a tolerance of each of those given.
@@ -55,6 +57,8 @@ def reduce_curves(
         As in `reduce`.
     form : {"spline", "bezier", "polyline"}, optional
         As in `reduce`. By default polylines stay polylines, and other shapes become cubic Bézier pieces.
+    joints : {"smooth", "g1", "free"}
+        As in `reduce`, of those that become Bézier pieces; polylines that stay polylines have no such joints.
     no_crossings : bool
         Whether a polyline, which must stay one, crosses itself only where it did. What is beside it does not matter.
 
@@ -82,7 +86,8 @@ def reduce_curves(
                 raise ParameterError(f"no_crossings and the tolerance {tolerance} given; expected one number")
             return Outcome(*uncrossed([spline], allowed, polylines(effort))[0])
         made = form or ("spline" if distance == "parametric" else "polyline" if _straight(spline) else "bezier")
-        found = reduce(spline, tolerance, distance=distance, form=made, effort=effort, keep=keep)
+        pieces = joints if form or made == "bezier" else JOINTS[0]
+        found = reduce(spline, tolerance, distance=distance, form=made, effort=effort, keep=keep, joints=pieces)
         return Outcome(found.spline, float(np.max(found.bound)))
 
     together = (
@@ -95,7 +100,7 @@ def reduce_curves(
     found: dict[int, Outcome] = {}
     if some:
         try:
-            made = reduce_shapes([splines[i] for i in some], tolerance, effort=effort, keep=keep)
+            made = reduce_shapes([splines[i] for i in some], tolerance, effort=effort, keep=keep, joints=joints)
             found = {i: Outcome(r.spline, float(np.max(r.bound))) for i, r in zip(some, made, strict=True)}
         except Exception:  # one of them cannot be reduced: which, is found one by one
             found = {}
@@ -110,6 +115,7 @@ def fit_curves(
     distance: str = "geometric",
     form: str = "bezier",
     effort: str = "normal",
+    joints: str = "smooth",
 ) -> list[Outcome]:
     """Return smooth curves within a tolerance of polylines; as in `fit`.
 
@@ -126,14 +132,15 @@ def fit_curves(
         points, closed = corners(spline), spline.space.periodic
         at = spline.space.breaks if distance == "parametric" else None
         found = fit(
-            points, tolerance, parameters=at, degree=degree, distance=distance, form=form, effort=effort, closed=closed
-        )
+            points, tolerance, parameters=at, degree=degree, distance=distance, form=form, effort=effort, closed=closed,
+            joints=joints,
+        )  # fmt: skip
         return Outcome(found.spline, float(np.max(found.bound)))
 
     if distance == "geometric" and form == "bezier":
         rest = [None if _straight(s) else attempted(one, s) for s in splines]
         some = [s for s, r in zip(splines, rest, strict=True) if r is None]
-        done = iter(reduce_curves(some, tolerance, form=form, effort=effort))
+        done = iter(reduce_curves(some, tolerance, form=form, effort=effort, joints=joints))
         return [next(done) if r is None else r for r in rest]
     return [attempted(one, spline) for spline in splines]
 

@@ -18,11 +18,12 @@ from knotwork.bulk.curves import TASKS
 from knotwork.bulk.parts import BOOKS, Job, Tally, begun, marked, run_part
 from knotwork.errors import FileError, ParameterError, nearest_name
 from knotwork.files.storage import replace
+from knotwork.removal.faces import JOINTS
 
 #: what every task can be asked for
 OPTIONS = {
-    "reduce": ("tolerance", "distance", "form", "effort", "keep", "no_crossings"),
-    "fit": ("tolerance", "degree", "distance", "form", "effort"),
+    "reduce": ("tolerance", "distance", "form", "effort", "keep", "joints", "no_crossings"),
+    "fit": ("tolerance", "degree", "distance", "form", "effort", "joints"),
     "convert": (),
     "flatten": ("tolerance",),
 }
@@ -110,7 +111,7 @@ def batch(
         Called with a `Pace` after each part.
     **options
         What the task takes: ``tolerance`` of all but "convert"; of "reduce" and "fit" also ``distance``, ``form``,
-        ``effort``; of "reduce" ``keep`` and ``no_crossings``; of "fit" ``degree``.
+        ``effort`` and ``joints``; of "reduce" ``keep`` and ``no_crossings``; of "fit" ``degree``.
 
     Returns
     -------
@@ -186,6 +187,10 @@ def _checked(task: str, options: dict[str, Any]) -> dict[str, Any]:
             raise ParameterError(f"option {name!r} given; {task!r} takes {known}{nearest_name(name, OPTIONS[task])}")
     if "tolerance" in OPTIONS[task] and "tolerance" not in chosen:
         raise ParameterError(f"no tolerance given; {task!r} needs one")
+    if (joints := chosen.get("joints", JOINTS[0])) not in JOINTS:
+        raise ParameterError(f"joints {joints!r} given; expected one of {', '.join(JOINTS)}")
+    if "joints" in chosen and (chosen.get("form", "bezier") != "bezier" or chosen.get("distance") == "parametric"):
+        raise ParameterError(f"joints {joints!r} given; they are those of Bézier pieces, and none are asked for")
     return chosen
 
 

@@ -40,6 +40,7 @@ SELDOM = 30.0
 @click.option("--distance", type=click.Choice(["parametric", "geometric"]), help="At equal parameters, or of shapes.")
 @click.option("--form", type=click.Choice(["spline", "bezier", "polyline"]), help="What shapes become.")
 @click.option("--effort", type=click.Choice(["fast", "normal", "best"]), help="How long to search.")
+@click.option("--joints", type=click.Choice(["smooth", "g1", "free"]), help="How Bézier pieces meet, as in reduce.")
 @click.option(
     "--no-crossings",
     is_flag=True,

@@ -179,7 +179,13 @@ def _bound(shape: Shape, found: Pieces, k: int) -> Any:
 
 
 def reduce_shapes(
-    curves: Sequence[Spline], tolerance: float, *, effort: str = "normal", keep: Any = None, crossings: str = "none-new"
+    curves: Sequence[Spline],
+    tolerance: float,
+    *,
+    effort: str = "normal",
+    keep: Any = None,
+    crossings: str = "none-new",
+    joints: str = "smooth",
 ) -> list[Reduction]:
     """Return cubic pieces that join for many curves at once, each as it would be alone, bit for bit.
 
@@ -192,7 +198,7 @@ def reduce_shapes(
     KnotworkError
         If a curve is none for `reduce_shape`.
     """
-    wanted = Wanted(None, effort, keep, 0, crossings, "keep", None)
+    wanted = Wanted(None, effort, keep, 0, crossings, "keep", None, joints)
     shapes = [Shape.of(curve, tolerance, keep, 0) for curve in curves]
     alike: dict[Any, list[int]] = defaultdict(list)
     for i, shape in enumerate(shapes):
