@@ -14,6 +14,7 @@ from files.cad.samples import iges_file, planar, tensor
 from knotwork.errors import FileError, KnotworkError
 from knotwork.files.cad import iges, step
 from knotwork.files.cad.step import syntax
+from knotwork.files.cad.step.index import HUGE, indexed
 from knotwork.files.cad.step.syntax import Text
 
 HEAD = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n"
@@ -213,7 +214,21 @@ def test_entities_found_at_once_are_those_found_one_by_one(data: st.DataObject) 
         i = data.draw(st.integers(400, len(text) - 1))
         text[i : i + data.draw(st.integers(0, 3))] = data.draw(
             st.sampled_from(
-                [b"", b" ", b"'", b"''", b"'a;#b'", b";", b"\r\n", b"/* no */", b"(", b"#1=", b"ENDSEC;", b"="]
+                [
+                    b"",
+                    b" ",
+                    b"'",
+                    b"''",
+                    b"'a;#b'",
+                    b";",
+                    b"\r\n",
+                    b"/* no */",
+                    b"(",
+                    b"#1=",
+                    b"#00000000071",
+                    b"ENDSEC;",
+                    b"=",
+                ]
             )
         )
     found = Text(bytes(text))
@@ -222,9 +237,12 @@ def test_entities_found_at_once_are_those_found_one_by_one(data: st.DataObject) 
         patch.setattr(syntax, "MANY", 10**9)
         expected = Text(bytes(text))
     assert found.broken == expected.broken
-    assert {k: found.place(k) for k in found._rows} == {k: expected.place(k) for k in expected._rows}
-    assert {k: found.start(k) for k in found._rows} == {k: expected.start(k) for k in expected._rows}
-    assert {n: k for n, k in found.named.items() if k} == expected.named
+    keys = found.index.keys.tolist()
+    assert keys == expected.index.keys.tolist()
+    for tell in (Text.place, Text.start, Text.references):
+        assert [tell(found, k) for k in keys] == [tell(expected, k) for k in keys]
+    for name in {*found.names, *expected.names}:
+        assert found.named(name) == expected.named(name)
 
 
 def test_many_points_are_read_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -250,3 +268,18 @@ def test_words_that_look_like_others_in_comments_and_texts() -> None:
     for text in (commented, named, spread):
         found = step.decode(file(text), lambda _: None)
         assert [(s.spaces, s.coefficients.tolist()) for s in found] == plain
+
+
+def test_numbers_of_many_digits_are_read_at_once() -> None:
+    """Of up to fifteen digits; one with more, or with none, is left to be read with its statement."""
+    keys = [7, 12345678, 123456789, 10**14 + 3, 99999999, 100000000]
+    inside = "".join(f"#{k}=A(#{k + 1},'#5',#{k:010});\n" for k in keys)
+    text = f"ISO-10303-21;DATA;{inside}ENDSEC;END-ISO-10303-21;"
+    at = text.index("#")
+    found = indexed(text.encode(), at)
+    assert found is not None
+    assert found.keys.tolist() == keys
+    assert found.references.tolist() == [n for k in keys for n in (k + 1, k)]
+    assert found.edges.tolist() == list(range(0, 2 * len(keys) + 1, 2))
+    assert indexed(text.replace("#7=", f"#{10**16}=").encode(), at) is None
+    assert Text(text.replace("#7=", f"#{10**16}=").encode()).index.keys[0] == HUGE

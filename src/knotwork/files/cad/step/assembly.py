@@ -66,15 +66,15 @@ class Reader:
     def _representations(self) -> tuple[dict[int, list[int]], dict[int, list[Move]]]:
         """Return the items of each representation, and where it is placed."""
         items: dict[int, list[int]] = {}
-        for name, keys in self.text.named.items():
-            if name.upper().endswith("SHAPE_REPRESENTATION"):  # not those of parameters, colours, properties
-                for key in keys:
+        for name in self.text.names:
+            if name.endswith("SHAPE_REPRESENTATION"):  # not those of parameters, colours, properties
+                for key in self.text.named(name):
                     args = next(iter(self.text.record(key).values()))
                     if len(args) >= 2 and type(args[1]) is list:
                         items[key] = [x for x in args[1] if type(x) is Ref]
         parents: dict[int, list[tuple[int, Array]]] = defaultdict(list)
         same: dict[int, list[int]] = defaultdict(list)
-        for key in self.text.named.get("SHAPE_REPRESENTATION_RELATIONSHIP", []):
+        for key in self.text.named("SHAPE_REPRESENTATION_RELATIONSHIP"):
             a, b = next(iter(self.text.record(key).values()))[2:4]
             same[a].append(b)
             same[b].append(a)
@@ -88,7 +88,7 @@ class Reader:
         for key, content in items.items():
             for item in content:
                 owners.setdefault(item, key)
-        for key in self.text.named.get("MAPPED_ITEM", []):
+        for key in self.text.named("MAPPED_ITEM"):
             owner = owners.get(key)
             _, source, target = self.text.record(key)["MAPPED_ITEM"]
             origin, mapped = self.text.record(source)["REPRESENTATION_MAP"]
@@ -261,7 +261,7 @@ class Reader:
 
     def _layers(self) -> dict[int, str]:
         found: dict[int, str] = {}
-        for key in self.text.named.get("PRESENTATION_LAYER_ASSIGNMENT", []):
+        for key in self.text.named("PRESENTATION_LAYER_ASSIGNMENT"):
             args = self.text.record(key)["PRESENTATION_LAYER_ASSIGNMENT"]
             found |= {x: str(args[0]) for x in args[2] if type(x) is Ref}
         return found

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import bisect
 import math
 import re
-from collections.abc import Iterator
-from itertools import islice, pairwise
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
-from knotwork.files.cad.step.index import Index, coordinates, indexed
+from knotwork.files.cad.step.index import DIGITS, HUGE, Index, Rows, coordinates, indexed, joined
 
 _SPACE = r"(?>\s+|/\*(?>[^*]+|\*(?!/))*\*/)*+"
 _ENTITY = re.compile(
@@ -47,111 +45,106 @@ class Text:
         if "ISO-10303-21" not in self.text[:2000]:
             raise FileError("there is no ISO-10303-21 at the start; expected a STEP file")
         self._data = data
-        self._comments = b"/*" in data
-        #: for each entity its row in the lists below
-        self._rows: dict[int, int] = {}
-        #: where each begins, its name ('' if it is made of several), and where its parameters stand
-        self._starts: list[int] = []
-        self._names: list[str] = []
-        self._first: list[int] = []
-        self._last: list[int] = []
-        #: the entities of each name
-        self.named: dict[str, list[int]] = {}
         self.broken: str | None = None
         #: records that were parsed last: most are asked for several times, one time after the other
         self._recent: dict[int, dict[str, list[Any]]] = {}
         start = _DATA.search(self.text)
         if start is None:
             raise FileError("there is no DATA section in this file")
+        parts = []
         while start is not None:
-            found = indexed(self.text, data, start.end())
-            end = self._section(start.end()) if found is None else self._taken(found)
-            start = _DATA.search(self.text, end)
+            parts.append(indexed(data, start.end()) or self._section(start.end()))
+            start = _DATA.search(self.text, parts[-1].end)
+        self.index = every = joined(parts)
+        #: for each entity its row in arrays: the number of its name, where it begins, where its parameters stand
+        self._rows = Rows(every.keys)
+        self._codes, self._starts, self._first, self._last, self._edges, self._references = (
+            each.data for each in (every.codes, every.starts, every.first, every.last, every.edges, every.references)
+        )
         self._points = self._all_points()
 
-    def _taken(self, found: Index) -> int:
-        """Take the entities that were found at once."""
-        self._rows |= zip(found.keys, range(len(self._starts), len(self._starts) + len(found.keys)), strict=True)
-        self._starts += found.starts
-        self._first += found.first
-        self._last += found.last
-        names = [name.upper() for name in found.names]
-        self._names += map(names.__getitem__, found.codes.tolist())
-        order = np.argsort(found.codes, kind="stable")
-        keys = np.array(found.keys)[order].tolist()
-        edges = np.searchsorted(found.codes[order], np.arange(len(found.names) + 1)).tolist()
-        for name, (lo, hi) in zip(names, pairwise(edges), strict=True):
-            self.named.setdefault(name, []).extend(keys[lo:hi])
-        return found.end
-
-    def _section(self, at: int) -> int:
-        """Find the entities of a section one by one, from a place on; return where it ends."""
+    def _section(self, at: int) -> Index:
+        """Find the entities of a section one by one, from a place on."""
+        rows, names, references, edges = [], dict[str, int](), [], [0]
+        end = len(self.text)
         for found in _ENTITY.finditer(self.text, at):
-            number = found[1]
-            if number is None:
+            if found[1] is None:
                 if found[4] is None:
                     self.broken = f"the data break off at line {self.line(found.start(5))}"
                     if found[5]:
                         self.broken += f": {self.text[found.start(5) : found.start(5) + 30].splitlines()[0]!r}"
-                    return len(self.text)
-                return found.end()
-            key = int(number)
-            self._rows[key] = len(self._starts)
-            self._starts.append(found.start(1) - 1)
-            self._names.append(found[2].upper())
-            self._first.append(found.start(3))
-            self._last.append(found.end(3))
-            self.named.setdefault(self._names[-1], []).append(key)
-        return len(self.text)
+                else:
+                    end = found.end()
+                break
+            code = names.setdefault(found[2], len(names))
+            rows.append((_number(found[1]), code, found.start(1) - 1, found.start(3), found.end(3)))
+            text = found[3] if "/*" not in found[3] else _COMMENT.sub(_blank, found[3])
+            references += [_number(x) for x in _TEXT_OR_REFERENCE.findall(text) if x]
+            edges.append(len(references))
+        keys, codes, starts, first, last = np.array(rows, np.int64).reshape(-1, 5).T.copy()
+        known, limits = np.array(references, np.int64), np.array(edges)
+        return Index(keys, list(names), codes, starts, first, last, known, limits, end)
 
-    def _all_points(self) -> tuple[Array, dict[int, int]]:
-        """Return the plain points of space, if there are many, and the row of each."""
-        keys = self.named.get("CARTESIAN_POINT", [])
-        if len(keys) < MANY:
-            return np.zeros((0, 3)), {}
-        rows = [self._rows[key] for key in keys]
-        found = coordinates(self.text, self._data, [self._first[r] for r in rows], [self._last[r] for r in rows])
-        plain = np.array(keys)[found.plain].tolist()
-        return found.points, dict(zip(plain, range(len(plain)), strict=True))
+    def _all_points(self) -> tuple[Array, Rows]:
+        """Return the plain points of space, if there are many, and what gives the row of each."""
+        every = self.index
+        rows = self._rows_named("CARTESIAN_POINT")
+        if len(rows) < MANY:
+            return np.zeros((0, 3)), Rows(rows[:0])
+        found = coordinates(self.text, self._data, every.first[rows], every.last[rows])
+        return found.points, Rows(every.keys[rows[found.plain]])
+
+    def _rows_named(self, name: str) -> Array:
+        names = self.index.names
+        return np.flatnonzero(self.index.codes == names.index(name)) if name in names else np.zeros(0, np.int64)
+
+    def named(self, name: str) -> list[int]:
+        """Return the entities of a name."""
+        keys: list[int] = self.index.keys[self._rows_named(name)].tolist()
+        return keys
+
+    @property
+    def names(self) -> list[str]:
+        """The names of entities, each once."""
+        return self.index.names
 
     def line(self, at: int) -> int:
         """Return the number of the line of a place in the text."""
         return self.text.count("\n", 0, at) + 1
 
+    def row(self, key: int) -> int:
+        """Return where an entity is in the order of the file."""
+        row = self._rows.one(key)
+        if row < 0:
+            raise FileError(f"#{key} is referred to, but not there")
+        return row
+
     def place(self, key: int) -> tuple[str, int, int]:
         """Return the name of an entity and where its parameters stand."""
-        row = self._rows.get(key)
-        if row is None:
-            raise FileError(f"#{key} is referred to, but not there")
-        return self._names[row], self._first[row], self._last[row]
+        row = self.row(key)
+        return self.index.names[self._codes[row]], self._first[row], self._last[row]
 
     def start(self, key: int) -> int:
         """Return where the statement of an entity begins."""
-        return self._starts[self._rows[key]]
+        return self._starts[self.row(key)]
 
     @property
     def largest(self) -> int:
         """The largest number of an entity."""
-        return max(self._rows)
+        return int(self.index.keys.max(initial=0))
 
     def several(self, *names: str) -> list[int]:
         """Return the entities made of several whose text has one of these names, in their order."""
-        keys = self.named.get("", [])
-        starts = [self.start(key) for key in keys]
-        rows = set()
-        for name in names if keys else ():
-            at = self.text.find(name)
-            while at >= 0:
-                i = bisect.bisect_right(starts, at) - 1
-                if i >= 0 and at < self.place(keys[i])[2]:
-                    rows.add(i)
-                at = self.text.find(name, at + 1)
-        return [keys[i] for i in sorted(rows)]
+        find, found = self.text.find, []
+        for row in self._rows_named("").tolist():
+            a, b = self._first[row], self._last[row]
+            if any(find(name, a, b) >= 0 for name in names):
+                found.append(int(self.index.keys[row]))
+        return found
 
     def name(self, key: int) -> str:
         """Return the name of an entity; '' if it is made of several."""
-        row = self._rows.get(key)
-        return self._names[row] if row is not None else self.place(key)[0]
+        return self.index.names[self._codes[self.row(key)]]
 
     def record(self, key: int) -> dict[str, list[Any]]:
         """Return the parameters of an entity by name: one name, or several."""
@@ -173,16 +166,18 @@ class Text:
         return {part[0]: part[1] for part in inside if type(part) is tuple}
 
     def references(self, key: int) -> list[int]:
-        """Return the entities that the parameters of one refer to, in their order, the quick way."""
-        _, a, b = self.place(key)
-        if self._comments and self.text.find("/*", a, b) >= 0:
-            return list(_references(self._parsed(key, a, b)))
-        return [int(x) for x in _TEXT_OR_REFERENCE.findall(self.text, a, b) if x]
+        """Return the entities that the parameters of one refer to, in their order."""
+        row = self.row(key)
+        found: list[int] = self._references[self._edges[row] : self._edges[row + 1]].tolist()
+        return found
 
     def label(self, key: int) -> str | None:
         """Return the text that is the first parameter of an entity, the quick way; None if there is none."""
-        _, a, b = self.place(key)
-        found = _FIRST_TEXT.match(self.text, a, b)
+        row = self.row(key)
+        a = self._first[row]
+        if self.text.startswith("('',", a):
+            return None
+        found = _FIRST_TEXT.match(self.text, a, self._last[row])
         return found[1].strip() or None if found else None
 
     def last_word(self, key: int) -> str:
@@ -203,16 +198,18 @@ class Text:
     def points(self, keys: list[int]) -> Array:
         """Return points of space, shape (n, 3)."""
         every, rows = self._points
-        try:
-            return every[list(map(rows.__getitem__, keys))]
-        except KeyError:  # few points, or not all plain ones
-            return np.array([self._in_space(key) for key in keys]).reshape(-1, 3)
+        given = np.array(keys) if len(every) and keys else np.zeros(0)
+        if given.dtype == np.int64 and given.ndim == 1:
+            found = rows.many(given)
+            if found.min() >= 0:
+                return every[found]
+        return np.array([self._in_space(key) for key in keys]).reshape(-1, 3)
 
     def point_in_space(self, key: int) -> Array:
         """Return one point of space."""
         every, rows = self._points
-        row = rows.get(key)
-        return every[row] if row is not None else np.array(self._in_space(key))
+        row = rows.one(key)
+        return every[row] if row >= 0 else np.array(self._in_space(key))
 
     def _in_space(self, key: int) -> list[float]:
         p = self.point(key)
@@ -224,7 +221,7 @@ class Text:
         """Return the values between two places: lists, numbers, texts; a name before a list makes a pair of them."""
         text = self.text[at:end]
         if "/*" in text:  # blanks in its place, so that lines stay
-            text = _COMMENT.sub(lambda m: m[0] if m[0][0] == "'" else re.sub(r"\S", " ", m[0]), text)
+            text = _COMMENT.sub(_blank, text)
         top: list[Any] = []
         stack = [top]
         for k, token in enumerate(_TOKEN.findall(text)):
@@ -262,7 +259,7 @@ class Text:
 def _take(word: str, top: list[Any]) -> bool:
     """Append what a word means to a list; tell whether it means something."""
     if word[0] == "#" and word[1:].isdecimal():
-        top.append(Ref(word[1:]))
+        top.append(Ref(_number(word[1:])))
     elif number := _NUMBER.fullmatch(word):
         whole = number[1] is None and number[2] is None and len(word) < 30
         top.append(int(word) if whole else float(word))
@@ -282,13 +279,14 @@ class _Name(str):
     __slots__ = ()
 
 
-def _references(values: list[Any]) -> Iterator[int]:
-    """Yield the numbers of entities in lists of lists."""
-    for each in values:
-        if type(each) is Ref:
-            yield each
-        elif type(each) in (list, tuple):
-            yield from _references(list(each))
+def _blank(found: re.Match[str]) -> str:
+    """Return blanks in the place of a comment, so that lines stay; a text as it is."""
+    return found[0] if found[0][0] == "'" else re.sub(r"\S", " ", found[0])
+
+
+def _number(digits: str) -> int:
+    """Return the number of an entity; one that is too long to be any is that of none."""
+    return int(digits) if len(digits) <= DIGITS else HUGE
 
 
 def references(text: str) -> list[int]:
