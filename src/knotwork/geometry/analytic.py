@@ -23,7 +23,10 @@ from knotwork.spline import Spline
 
 
 class Frame(NamedTuple):
-    """Where something stands: a point and three directions, orthogonal and of length 1; each of shape (3,)."""
+    """Where something stands: a point and three directions, orthogonal and of length 1; each of shape (3,).
+
+    Of several frames, each has shape (n, 3).
+    """
 
     origin: Array
     x: Array
@@ -39,17 +42,14 @@ class Frame(NamedTuple):
         ParameterError
             If a direction has no length, or both are the same.
         """
-        z = _unit((0.0, 0.0, 1.0) if axis is None else axis, "axis")
-        if x is None:
-            x = (1.0, 0.0, 0.0) if abs(z[0]) < 1.0 else (0.0, 1.0, 0.0)
-        part = sum(a * b for a, b in zip(x, z, strict=True))
-        near = [a - part * b for a, b in zip(x, z, strict=True)]
-        near = _unit(near, "reference direction, without its part along the axis,")
-        return cls(np.array(origin, np.float64), np.array(near), _skew(z) @ near, np.array(z))
+        axes = _axes((0.0, 0.0, 1.0) if axis is None else tuple(map(float, axis)), None if x is None else tuple(x))
+        return cls(np.array(origin, np.float64), *axes)
 
     def local(self, points: Array) -> Array:
-        """Return the coordinates of points in this frame, shape (…, 3)."""
-        found: Array = (points - self.origin) @ np.array((self.x, self.y, self.z)).T
+        """Return the coordinates of points in this frame, shape (…, 3); or in each of several, shape (n, k, 3)."""
+        axes = np.stack((self.x, self.y, self.z), axis=-2)
+        origin = self.origin if self.origin.ndim == 1 else self.origin[:, None]
+        found: Array = (points - origin) @ axes.swapaxes(-1, -2)
         return found
 
 
@@ -214,9 +214,29 @@ def extrusion(profile: Spline, direction: Any, start: float = 0.0, stop: float =
 
 def plane(frame: Frame, u: Sequence[float], v: Sequence[float]) -> Spline:
     """Return the rectangle of the points origin + u · x + v · y, u and v between two numbers each."""
-    O, x, y, _ = frame
-    net = O + np.array(u)[:, None, None] * x + np.array(v)[:, None] * y
-    return fitting((over_breaks(1, u), over_breaks(1, v)), net)
+    return fitting((over_breaks(1, u), over_breaks(1, v)), _rectangle(frame, np.array(u), np.array(v)))
+
+
+def planes(frames: Frame, hulls: Array) -> list[Spline | None]:
+    """Return a rectangle in each of several frames, as large as its points need, shape (n, k, 3).
+
+    None stands for one that has no area, or is not finite: `plane` tells what is wrong with it.
+    """
+    local = frames.local(hulls)
+    low, high = local.min(axis=1), local.max(axis=1)
+    u, v = (np.stack([low[:, i], high[:, i]], axis=1) for i in (0, 1))
+    nets = _rectangle(frames, u, v)
+    good = (low < high)[:, :2].all(axis=1) & np.isfinite(nets).all(axis=(1, 2, 3))
+    return [
+        Spline.trusted((over_breaks(1, a), over_breaks(1, b)), net) if fine else None
+        for a, b, net, fine in zip(u.tolist(), v.tolist(), nets, good.tolist(), strict=True)
+    ]
+
+
+def _rectangle(frame: Frame, u: Array, v: Array) -> Array:
+    O, x, y, _ = (each[..., None, None, :] for each in frame)
+    net: Array = O + u[..., :, None, None] * x + v[..., None, :, None] * y
+    return net
 
 
 def cone(frame: Frame, radius: float, angle: float, u: Sequence[float], v: Sequence[float]) -> Spline:
@@ -230,6 +250,21 @@ def torus(frame: Frame, major: float, minor: float, u: Sequence[float], v: Seque
     """Return a part of a torus, v the angle around the tube; a sphere if the major radius is 0."""
     O, x, _, z = frame
     return revolution(ellipse(O + major * x, minor * x, minor * z, *v), O, z, *u)
+
+
+@functools.lru_cache(maxsize=1024)
+def _axes(axis: tuple[float, ...], x: tuple[float, ...] | None) -> tuple[Array, Array, Array]:
+    """Return the directions of a frame; a model has many frames of few directions."""
+    z = _unit(axis, "axis")
+    if x is None:
+        x = (1.0, 0.0, 0.0) if abs(z[0]) < 1.0 else (0.0, 1.0, 0.0)
+    part = sum(a * b for a, b in zip(x, z, strict=True))
+    near = [a - part * b for a, b in zip(x, z, strict=True)]
+    near = _unit(near, "reference direction, without its part along the axis,")
+    found = np.array(near), _skew(z) @ near, np.array(z)
+    for each in found:
+        each.setflags(write=False)
+    return found
 
 
 @functools.lru_cache(maxsize=64)

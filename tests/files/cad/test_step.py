@@ -14,6 +14,7 @@ from files.cad.samples import iges_file, planar, tensor
 from knotwork.errors import FileError, KnotworkError
 from knotwork.files.cad import iges, step
 from knotwork.files.cad.step import syntax
+from knotwork.files.cad.step.geometry import Geometry
 from knotwork.files.cad.step.index import HUGE, indexed
 from knotwork.files.cad.step.syntax import Text
 
@@ -241,6 +242,7 @@ def test_entities_found_at_once_are_those_found_one_by_one(data: st.DataObject) 
     assert keys == expected.index.keys.tolist()
     for tell in (Text.place, Text.start, Text.references):
         assert [tell(found, k) for k in keys] == [tell(expected, k) for k in keys]
+    assert [name for name in found.names if found.named(name)] == expected.names
     for name in {*found.names, *expected.names}:
         assert found.named(name) == expected.named(name)
 
@@ -283,3 +285,41 @@ def test_numbers_of_many_digits_are_read_at_once() -> None:
     assert found.edges.tolist() == list(range(0, 2 * len(keys) + 1, 2))
     assert indexed(text.replace("#7=", f"#{10**16}=").encode(), at) is None
     assert Text(text.replace("#7=", f"#{10**16}=").encode()).index.keys[0] == HUGE
+
+
+def block(number: int) -> str:
+    """Return one face of a block, a square of four edges, some of them backwards or curves on surfaces."""
+    n, words = 100 * number, (".T.", ".F.", ".T.", ".F.")
+    text = f"#{n}=ADVANCED_FACE('',(#{n + 1}),#{n + 3},.T.);#{n + 1}=FACE_BOUND('',#{n + 2},.T.);"
+    text += f"#{n + 2}=EDGE_LOOP('',({','.join(f'#{n + 10 + i}' for i in range(4))}));"
+    text += f"#{n + 3}=PLANE('',#{n + 4});#{n + 4}=AXIS2_PLACEMENT_3D('',#1,#2,#3);"
+    for i, (a, b, word) in enumerate(zip((0, 1, 2, 3), (1, 2, 3, 0), words, strict=True)):
+        a, b = (a, b) if word == ".T." else (b, a)
+        text += f"#{n + 10 + i}=ORIENTED_EDGE('',*,*,#{n + 20 + i},{word});"
+        text += f"#{n + 20 + i}=EDGE_CURVE('#7',#{n + 40 + a},#{n + 40 + b},#{n + 30 + i},{word});"
+        kind = f"SURFACE_CURVE('',#{n + 60},(#{n + 4}),.CURVE_3D.)" if i == 3 else "LINE('',#1,#6)"
+        text += f"#{n + 30 + i}={kind};#{n + 40 + i}=VERTEX_POINT('',#{n + 50 + i});"
+        text += f"#{n + 50 + i}=CARTESIAN_POINT('',({(0, 3, 3, 0)[i]}.,2.,{(0, 0, 1, 1)[i] + number}.));\n"
+    return text + f"#{n + 60}=LINE('',#1,#6);"
+
+
+def test_edges_and_planes_made_at_once_are_those_made_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not plain among them is made by itself, or told."""
+    text = "#20=OPEN_SHELL('',(#100,#200,#300,#400));#6=VECTOR('',#2,1.);" + "".join(map(block, (1, 2, 3, 4)))
+    text = text.replace("#241=VERTEX_POINT('',#251)", "#241=VERTEX_POINT('',#998)")  # no such point
+    text = text.replace("#304=AXIS2_PLACEMENT_3D('',#1,#2,#3)", "#304=AXIS2_PLACEMENT_3D('',#1,#2,$)")
+    text += "#404=AXIS2_PLACEMENT_3D('',#1,#2,#2);"  # said twice, and its directions are the same
+    found: list[list[kw.Spline]] = []
+    told: list[list[str]] = []
+    for many in (1, 10**9):
+        monkeypatch.setattr(syntax, "MANY", many)
+        told.append([])
+        found.append(step.decode(file(text), told[-1].append))
+        monkeypatch.setattr(Geometry, "planes", lambda *_: {})
+    assert found[0] == found[1]
+    assert told[0] == told[1]
+    assert [s.parameters for s in found[0]].count(2) == 3
+    assert any("#998 is referred to, but not there" in each for each in told[0])
+    assert any("reference direction" in each for each in told[0])
+    square = found[0][0]
+    assert square.points.tolist() == [[0, 2, 1], [3, 2, 1]]

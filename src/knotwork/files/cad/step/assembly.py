@@ -13,6 +13,7 @@ from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
 from knotwork.files.cad.shapes import Remarks, Shape, magnification, moved
 from knotwork.files.cad.step.geometry import CURVES, SURFACES, End, Geometry
+from knotwork.files.cad.step.straight import StraightEdges
 from knotwork.files.cad.step.syntax import Ref, Text
 from knotwork.files.places import Place
 from knotwork.geometry.analytic import Frame
@@ -48,6 +49,7 @@ class Reader:
         self.units, radians = _units(text)
         self.geometry = Geometry(text, radians)
         self.layers = self._layers()
+        self._straight = StraightEdges(text)
         self._edges: dict[int, Spline | None] = {}
 
     def shapes(self) -> Iterator[Shape]:
@@ -154,10 +156,13 @@ class Reader:
             spline = self._edge(edge)
             if spline is not None:
                 owners = f", an edge of {', '.join(f'#{f}' for f in bounds[edge])}" if bounds[edge] else ""
-                key_, own = self._own(self.text.references(edge)[-1])
+                straight = edge in self._straight
+                key_, own = (None, None) if straight else self._own(self.text.references(edge)[-1])
                 found += self._copies(spline, edge, name, moves, owners, key_, own)
+        flat = self._flat(around)
         for face in faces:
-            found += self.remarks.attempt(f"#{face}", lambda face=face: self._face(face, around[face], name, moves))  # type: ignore[misc]
+            made = flat.get(face)
+            found += self.remarks.attempt(f"#{face}", lambda f=face, s=made: self._face(f, around[f], s, name, moves))  # type: ignore[misc]
         for each in loose:
             found += self.remarks.attempt(f"#{each}", lambda each=each: self._loose(each, name, moves))  # type: ignore[misc]
         return found
@@ -200,7 +205,9 @@ class Reader:
 
     def _edge(self, key: int) -> Spline | None:
         if key not in self._edges:
-            self._edges[key] = None
+            self._edges[key] = found = self._straight.of(key)
+            if found is not None:
+                return found
             told = self.remarks.attempt(f"#{key}", lambda: [self._make_edge(key)])  # type: ignore[list-item]
             self._edges[key] = told[0] if told else None  # type: ignore[assignment]
         return self._edges[key]
@@ -211,15 +218,33 @@ class Reader:
             p, q = self.geometry.vertex(first), self.geometry.vertex(last)
             return self.geometry.between(curve, End(None, p), End(None, q), self.text.last_word(key) == ".T.")
 
-    def _face(self, key: int, edges: list[int], name: str | None, moves: list[Move]) -> list[Shape]:
-        with self.geometry.within(key):
-            surface = self.text.references(key)[-1]
-            hull = [s.points for s in map(self._edge, edges) if s is not None]
-            points = np.concatenate(hull) if hull else np.concatenate([np.zeros((0, 3)), *self._corners(key)])
-            spline = self.geometry.surface(surface, points)
+    def _flat(self, around: dict[int, list[int]]) -> dict[int, Spline]:
+        """Return the planes of faces, made at once; what is not plain is left to be read by itself."""
+        text, faces = self.text, list(around)
+        surfaces = text.reference(text.rows(np.array(faces, np.int64)), -1)
+        flat = np.flatnonzero(text.are(text.rows(surfaces), "PLANE")).tolist()
+        hulls = {k: self._hull(around[faces[k]]) for k in flat}
+        return self.geometry.planes({faces[k]: (int(surfaces[k]), hull) for k, hull in hulls.items() if len(hull)})
+
+    def _hull(self, edges: list[int]) -> Array:
+        """Return the control points of edges."""
+        nets = [s.points for s in map(self._edge, edges) if s is not None]
+        return np.concatenate(nets) if nets else np.zeros((0, 3))
+
+    def _face(
+        self, key: int, edges: list[int], plane: Spline | None, name: str | None, moves: list[Move]
+    ) -> list[Shape]:
+        own: tuple[int | None, Spline | None] = None, None
+        spline = plane
+        if spline is None:
+            with self.geometry.within(key):
+                surface = self.text.references(key)[-1]
+                hull = self._hull(edges)
+                hull = hull if len(hull) else np.concatenate([hull, *self._corners(key)])
+                spline = self.geometry.surface(surface, hull)
+            own = self._own(surface)
         self.remarks.left_out("face(s) bound their surfaces; these are read whole, and the edges as curves", f"#{key}")
-        entity, own = self._own(surface)
-        return self._copies(spline, key, name, moves, "", entity, own)
+        return self._copies(spline, key, name, moves, "", *own)
 
     def _corners(self, face: int) -> list[Array]:
         found = []

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.errors import FileError
+from knotwork.errors import FileError, KnotworkError
 from knotwork.files.cad.shapes import spline_of
+from knotwork.files.cad.step.straight import ON_SURFACES
 from knotwork.files.cad.step.syntax import Text
 from knotwork.geometry import analytic
 from knotwork.geometry.analytic import Frame
@@ -22,8 +24,6 @@ from knotwork.spline import Spline
 _NONSENSE = (TypeError, ValueError, IndexError, KeyError, np.linalg.LinAlgError)
 #: entities may refer to each other so deep
 DEEP = 40
-#: curves of space that also tell their pictures on surfaces
-ON_SURFACES = {"SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"}
 CURVES = {
     "LINE", "CIRCLE", "ELLIPSE", "HYPERBOLA", "PARABOLA", "POLYLINE", "TRIMMED_CURVE", "COMPOSITE_CURVE",
     "B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE", "UNIFORM_CURVE", "QUASI_UNIFORM_CURVE",
@@ -276,6 +276,22 @@ class Geometry:
             return spline_of(spaces, points, weights)
 
     # ---- surfaces ------------------------------------------------------------------------------------------------
+
+    def planes(self, given: dict[int, tuple[int, Array]]) -> dict[int, Spline]:
+        """Return the planes of many faces, each as large as its points need; those with faults are left out."""
+        alike: dict[int, list[tuple[int, Frame, Array]]] = defaultdict(list)
+        for face, (key, points) in given.items():
+            try:
+                (place,) = self.text.references(key)
+                alike[len(points)].append((face, self.frame(place), points))
+            except (KnotworkError, ValueError):  # told when it is read by itself
+                continue
+        found: dict[int, Spline] = {}
+        for some in alike.values():
+            faces, frames, hulls = zip(*some, strict=True)
+            made = analytic.planes(Frame(*map(np.array, zip(*frames, strict=True))), np.array(hulls))
+            found |= {face: spline for face, spline in zip(faces, made, strict=True) if spline is not None}
+        return found
 
     def surface(self, key: int, hull: Array) -> Spline:
         """Return a surface: one without ends as large as the points of its boundary need."""

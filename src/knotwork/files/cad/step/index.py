@@ -85,6 +85,8 @@ def indexed(data: bytes, at: int) -> Index | None:
     if (first > stops).any():
         return None
     _, one, codes = np.unique(marks, return_index=True, return_inverse=True)
+    order = np.argsort(one)  # names in the order of the file
+    codes, one = np.argsort(order)[codes], one[order]
     names = [data[at + lo : at + hi].decode("latin-1") for lo, hi in zip(name[one], first[one], strict=True)]
     if not all(map(_NAME.fullmatch, names)) or len(names) > 1 << 15:
         return None
@@ -147,8 +149,9 @@ class Rows:
     def many(self, keys: Array) -> Array:
         """Return the rows of keys."""
         if not self._dense:
-            return np.array([self._one.get(key, -1) for key in keys.tolist()], np.int64)
-        there = keys < len(self._table)
+            found = [self._one.get(key, -1) for key in keys.reshape(-1).tolist()]
+            return np.array(found, np.int64).reshape(keys.shape)
+        there = (keys >= 0) & (keys < len(self._table))
         return np.where(there, self._table[np.where(there, keys, 0)], -1)
 
 

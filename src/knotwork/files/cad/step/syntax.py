@@ -61,7 +61,8 @@ class Text:
         self._codes, self._starts, self._first, self._last, self._edges, self._references = (
             each.data for each in (every.codes, every.starts, every.first, every.last, every.edges, every.references)
         )
-        self._points = self._all_points()
+        #: the plain points of space, if there are many, and the row of each
+        self.all_points = self._all_points()
 
     def _section(self, at: int) -> Index:
         """Find the entities of a section one by one, from a place on."""
@@ -86,22 +87,46 @@ class Text:
         return Index(keys, list(names), codes, starts, first, last, known, limits, end)
 
     def _all_points(self) -> tuple[Array, Rows]:
-        """Return the plain points of space, if there are many, and what gives the row of each."""
         every = self.index
-        rows = self._rows_named("CARTESIAN_POINT")
+        rows = self.rows_named("CARTESIAN_POINT")
         if len(rows) < MANY:
             return np.zeros((0, 3)), Rows(rows[:0])
         found = coordinates(self.text, self._data, every.first[rows], every.last[rows])
         return found.points, Rows(every.keys[rows[found.plain]])
 
-    def _rows_named(self, name: str) -> Array:
+    def rows_named(self, name: str) -> Array:
+        """Return the rows of the entities of a name."""
         names = self.index.names
         return np.flatnonzero(self.index.codes == names.index(name)) if name in names else np.zeros(0, np.int64)
 
     def named(self, name: str) -> list[int]:
         """Return the entities of a name."""
-        keys: list[int] = self.index.keys[self._rows_named(name)].tolist()
+        keys: list[int] = self.index.keys[self.rows_named(name)].tolist()
         return keys
+
+    def rows(self, keys: Array) -> Array:
+        """Return the rows of entities, -1 where there is none."""
+        return self._rows.many(keys)
+
+    def are(self, rows: Array, *names: str) -> Array:
+        """Tell which rows are those of entities of some names."""
+        codes = [i for i, name in enumerate(self.index.names) if name in names]
+        found: Array = (rows >= 0) & np.isin(self.index.codes[rows], codes)
+        return found
+
+    def reference(self, rows: Array, k: int) -> Array:
+        """Return reference k of each of some rows, from the end if it is negative; -1 where there is none."""
+        lo, hi = self.index.edges[rows], self.index.edges[rows + 1]
+        at = k + (lo if k >= 0 else hi)
+        there = (rows >= 0) & (lo <= at) & (at < hi)
+        found = np.full(rows.shape, -1)
+        found[there] = self.index.references[at[there]]
+        return found
+
+    def endings(self, rows: Array, size: int) -> Array:
+        """Return the last bytes of the parameters of some rows, shape (m, size)."""
+        given = np.frombuffer(self._data, np.uint8)
+        return given[self.index.last[rows][:, None] + np.arange(-size, 0)]
 
     @property
     def names(self) -> list[str]:
@@ -136,7 +161,7 @@ class Text:
     def several(self, *names: str) -> list[int]:
         """Return the entities made of several whose text has one of these names, in their order."""
         find, found = self.text.find, []
-        for row in self._rows_named("").tolist():
+        for row in self.rows_named("").tolist():
             a, b = self._first[row], self._last[row]
             if any(find(name, a, b) >= 0 for name in names):
                 found.append(int(self.index.keys[row]))
@@ -197,7 +222,7 @@ class Text:
 
     def points(self, keys: list[int]) -> Array:
         """Return points of space, shape (n, 3)."""
-        every, rows = self._points
+        every, rows = self.all_points
         given = np.array(keys) if len(every) and keys else np.zeros(0)
         if given.dtype == np.int64 and given.ndim == 1:
             found = rows.many(given)
@@ -207,7 +232,7 @@ class Text:
 
     def point_in_space(self, key: int) -> Array:
         """Return one point of space."""
-        every, rows = self._points
+        every, rows = self.all_points
         row = rows.one(key)
         return every[row] if row >= 0 else np.array(self._in_space(key))
 
