@@ -17,7 +17,7 @@ from knotwork.arithmetic.arrays import Array
 #: spaces at one place, digits of a number, letters of a name, at most; and the number of what has more digits
 SPACES, DIGITS, LETTERS = 16, 15, 80
 HUGE = 10**DIGITS
-_QUOTE, _HASH, _SEMICOLON, _EQUALS, _COMMA, _OPEN, _CLOSE = b"'#;=,()"
+_QUOTE, _HASH, _SEMICOLON, _EQUALS = b"'#;="
 _NAME = re.compile(r"\w*", re.ASCII)
 #: eight bytes as a number: each of them 1, or its highest bit
 _ONES, _HIGH = (np.uint64(0x0101010101010101 * k) for k in (1, 128))
@@ -105,19 +105,17 @@ class Coordinates(NamedTuple):
     plain: Array
 
 
-def coordinates(text: str, data: bytes, first: Array, last: Array) -> Coordinates:
+def coordinates(text: str, first: Array, last: Array) -> Coordinates:
     """Return what stands in the last parentheses of statements, where that is three numbers."""
-    lo, hi = int(first.min()), int(last.max())
-    d = np.frombuffer(data, np.uint8, hi - lo, lo)
-    a, b = first - lo, last - lo
-    opens, closes, commas = (np.append(np.flatnonzero(d == mark), hi) for mark in (_OPEN, _CLOSE, _COMMA))
-    i = opens[np.searchsorted(opens, b) - 1]
-    j = closes[np.searchsorted(closes, i)]
-    between = np.searchsorted(commas, j) - np.searchsorted(commas, i)
-    plain = (i >= a) & (i < b) & (j < b) & (between == 2)
-    texts = [text[x:y] for x, y in zip((i[plain] + lo + 1).tolist(), (j[plain] + lo).tolist(), strict=True)]
+    inside, plain = [], np.zeros(len(first), bool)
+    for k, (a, b) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+        i = text.rfind("(", a, b)
+        j = text.find(")", i, b) if i >= 0 else -1
+        if j >= 0 and text.count(",", i, j) == 2:
+            inside.append(text[i + 1 : j])
+            plain[k] = True
     try:
-        points = np.array([*map(float, ",".join(texts).split(","))] if texts else []).reshape(-1, 3)
+        points = np.array([*map(float, ",".join(inside).split(","))] if inside else []).reshape(-1, 3)
     except ValueError:  # one of them is no number: each is read when it is asked for
         return Coordinates(np.zeros((0, 3)), np.zeros(len(first), bool))
     finite = np.isfinite(points).all(axis=1)

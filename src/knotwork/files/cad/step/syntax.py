@@ -91,7 +91,7 @@ class Text:
         rows = self.rows_named("CARTESIAN_POINT")
         if len(rows) < MANY:
             return np.zeros((0, 3)), Rows(rows[:0])
-        found = coordinates(self.text, self._data, every.first[rows], every.last[rows])
+        found = coordinates(self.text, every.first[rows], every.last[rows])
         return found.points, Rows(every.keys[rows[found.plain]])
 
     def rows_named(self, name: str) -> Array:
@@ -160,12 +160,9 @@ class Text:
 
     def several(self, *names: str) -> list[int]:
         """Return the entities made of several whose text has one of these names, in their order."""
-        find, found = self.text.find, []
-        for row in self.rows_named("").tolist():
-            a, b = self._first[row], self._last[row]
-            if any(find(name, a, b) >= 0 for name in names):
-                found.append(int(self.index.keys[row]))
-        return found
+        search, rows = re.compile("|".join(names)).search, self.rows_named("")
+        keys, first, last = (each[rows].tolist() for each in (self.index.keys, self.index.first, self.index.last))
+        return [key for key, a, b in zip(keys, first, last, strict=True) if search(self.text, a, b)]
 
     def name(self, key: int) -> str:
         """Return the name of an entity; '' if it is made of several."""
