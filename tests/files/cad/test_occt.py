@@ -11,8 +11,10 @@ import knotwork as kw
 pytest.importorskip("OCP", reason="OpenCASCADE is not installed")
 
 from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_Transform
+from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
     BRepPrimAPI_MakeCone,
@@ -30,6 +32,7 @@ from OCP.Geom import (
     Geom_SurfaceOfLinearExtrusion,
     Geom_SurfaceOfRevolution,
 )
+from OCP.GeomAbs import GeomAbs_SurfaceType
 from OCP.GeomAPI import GeomAPI_ProjectPointOnCurve, GeomAPI_ProjectPointOnSurf
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.IGESControl import IGESControl_Reader, IGESControl_Writer
@@ -224,3 +227,54 @@ def test_opencascade_reads_what_is_written(suffix, tmp_path):
     for u, v in np.ndindex(5, 5):
         there = surface.Value(u / 4, v / 4)
         assert np.allclose(net(u / 4, v / 4), [there.X(), there.Y(), there.Z()], rtol=0, atol=10 * CLOSE)
+
+
+def rounded() -> object:
+    """Return a box three edges of which are rounded."""
+    box = BRepPrimAPI_MakeBox(FRAME, 4, 5, 6).Shape()
+    made, explorer = BRepFilletAPI_MakeFillet(box), TopExp_Explorer(box, TopAbs_ShapeEnum.TopAbs_EDGE)
+    for _ in range(3):
+        made.Add(0.5, TopoDS.Edge(explorer.Current()))
+        explorer.Next()
+    return made.Shape()
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        SHAPES["part of a cylinder"],
+        SHAPES["drilled box"],
+        SHAPES["cone"],
+        lambda: BRepPrimAPI_MakeCone(FRAME, 2, 1, 5, 1.2).Shape(),
+        lambda: BRepPrimAPI_MakeCone(FRAME, 0, 3, 5, 0.4).Shape(),
+        rounded,
+    ],
+)
+def test_faces_of_cylinders_and_cones_end_where_those_of_opencascade_do(make: Callable, tmp_path: Path) -> None:
+    """The patch that is read holds the face; around the axis it is no wider, unless it is a whole turn."""
+    path = written(make(), tmp_path / "part.step")
+    document = kw.open(path)
+    patches = [spline for spline in document.splines if spline.parameters == 2]
+    reader = STEPControl_Reader()
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
+    explorer, seen = TopExp_Explorer(reader.OneShape(), TopAbs_ShapeEnum.TopAbs_FACE), 0
+    for patch in patches:
+        face = BRepAdaptor_Surface(TopoDS.Face(explorer.Current()), True)
+        explorer.Next()
+        if face.GetType() not in (GeomAbs_SurfaceType.GeomAbs_Cylinder, GeomAbs_SurfaceType.GeomAbs_Cone):
+            continue
+        seen += 1
+        cone = face.GetType() == GeomAbs_SurfaceType.GeomAbs_Cone
+        along = np.cos(face.Cone().SemiAngle()) if cone else 1.0  # OpenCASCADE measures along the side
+        u, v = (face.FirstUParameter(), face.LastUParameter()), (face.FirstVParameter(), face.LastVParameter())
+        (low, high), (start, stop) = (space.domain for space in patch.spaces)
+        assert start <= v[0] * along + 1e-6
+        assert stop >= v[1] * along - 1e-6
+        if high - low < 2 * np.pi:
+            turns = 2 * np.pi * round((low - u[0]) / (2 * np.pi))
+            assert np.allclose((low, high), np.add(u, turns), atol=1e-6)
+        else:
+            at_axis = cone and min(np.linalg.norm(patch.points[0] - patch.points[4], axis=-1)) < 1e-9
+            assert at_axis or u[1] - u[0] > 6
+    assert seen

@@ -1,6 +1,7 @@
 """STEP: faces and edges where assemblies place them; B-splines come back bit for bit, alone and among others."""
 
 import contextlib
+import math
 import re
 from pathlib import Path
 
@@ -95,7 +96,9 @@ def test_a_face_is_as_large_as_its_edges_need(tmp_path: Path) -> None:
     assert np.allclose(first(0.0), [6, 2, 3])
     assert np.allclose(second(0.0), [6, 9, 3])
     assert np.allclose(tube(0.0, tube.spaces[1].domain), [[6, 2, 3], [6, 9, 3]])
-    assert told == ["1 face(s) bound their surfaces; these are read whole, and the edges as curves; the first is #21"]
+    assert len(told) == 1
+    assert told[0].startswith("1 face(s) end inside their surfaces: read are patches that hold them")
+    assert told[0].endswith("the first is #21")
     places = step.opened(file(CYLINDER), told.append).places
     assert [p.where for p in places] == ["#27, an edge of #21", "#28, an edge of #21", "#21"]
     assert [p.name for p in places] == ["shell", "shell", "side"]
@@ -323,3 +326,45 @@ def test_edges_and_planes_made_at_once_are_those_made_one_by_one(monkeypatch: py
     assert any("reference direction" in each for each in told[0])
     square = found[0][0]
     assert square.points.tolist() == [[0, 2, 1], [3, 2, 1]]
+
+
+#: a part of the cylinder of radius 5 about the z axis, between two angles and two heights
+PART = """#20=OPEN_SHELL('',(#21));#21=ADVANCED_FACE('',(#22),#23,.T.);#22=FACE_OUTER_BOUND('',#24,.T.);
+#23=CYLINDRICAL_SURFACE('',#50,5.);#24=EDGE_LOOP('',(#25,#26,#27,#28));
+#25=ORIENTED_EDGE('',*,*,#31,.T.);#26=ORIENTED_EDGE('',*,*,#32,.T.);
+#27=ORIENTED_EDGE('',*,*,#33,.F.);#28=ORIENTED_EDGE('',*,*,#34,.F.);
+#31=EDGE_CURVE('',#41,#42,#51,.T.);#32=EDGE_CURVE('',#42,#43,#55,.T.);
+#33=EDGE_CURVE('',#44,#43,#52,.T.);#34=EDGE_CURVE('',#41,#44,#55,.T.);
+#50=AXIS2_PLACEMENT_3D('',#60,$,$);#51=CIRCLE('',#53,5.);#52=CIRCLE('',#54,5.);
+#53=AXIS2_PLACEMENT_3D('',#61,$,$);#54=AXIS2_PLACEMENT_3D('',#62,$,$);#55=LINE('',#60,#56);#56=VECTOR('',#57,1.);
+#57=DIRECTION('',(0.,0.,1.));#60=CARTESIAN_POINT('',(0.,0.,0.));
+#61=CARTESIAN_POINT('',(0.,0.,-1.));#62=CARTESIAN_POINT('',(0.,0.,2.));
+"""
+
+
+def part(start: float, stop: float) -> str:
+    text = PART
+    for k, (u, z) in enumerate(((start, -1), (stop, -1), (stop, 2), (start, 2)), 41):
+        point = f"{5 * math.cos(u)},{5 * math.sin(u)},{z}."
+        text += f"#{k}=VERTEX_POINT('',#{k + 30});#{k + 30}=CARTESIAN_POINT('',({point}));"
+    return text
+
+
+@given(st.floats(-3, 3), st.floats(0.01, 6.2))
+def test_a_face_of_a_cylinder_goes_as_far_around_as_its_edges(start: float, size: float) -> None:
+    (face,) = [s for s in step.decode(file(part(start, start + size)), lambda _: None) if s.parameters == 2]
+    (low, high), heights = (space.domain for space in face.spaces)
+    assert heights == (-1, 2)
+    assert 0 <= low + 1e-8 < 2 * np.pi
+    assert high - low == pytest.approx(size, abs=1e-12)
+    corners = [[5 * np.cos(u), 5 * np.sin(u), z] for u in (start, start + size) for z in (-1, 2)]
+    assert np.allclose(face.points[[0, 0, -1, -1], [0, 1, 0, 1]], corners, atol=1e-12)
+
+
+def test_a_face_of_a_cylinder_that_may_be_anywhere_is_all_its_turn() -> None:
+    """Where an edge is against its loop, or one is missing, nothing is cut off."""
+    for old, new in (("#33,.F.", "#33,.T."), ("(#25,#26,#27,#28)", "(#25,#26)"), ("#44=VERTEX", "#49=VERTEX")):
+        text = part(0.5, 1.5)
+        assert old in text
+        faces = [s for s in step.decode(file(text.replace(old, new)), lambda _: None) if s.parameters == 2]
+        assert [face.spaces[0].domain for face in faces] == [(0, 2 * np.pi)]

@@ -11,6 +11,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError
+from knotwork.files.cad.around import Side
 from knotwork.files.cad.shapes import Remarks, Shape, magnification, moved
 from knotwork.files.cad.step.geometry import CURVES, SURFACES, End, Geometry
 from knotwork.files.cad.step.straight import StraightEdges
@@ -234,6 +235,7 @@ class Reader:
     def _face(
         self, key: int, edges: list[int], plane: Spline | None, name: str | None, moves: list[Move]
     ) -> list[Shape]:
+        where = f"#{key}"
         own: tuple[int | None, Spline | None] = None, None
         spline = plane
         if spline is None:
@@ -241,10 +243,26 @@ class Reader:
                 surface = self.text.references(key)[-1]
                 hull = self._hull(edges)
                 hull = hull if len(hull) else np.concatenate([hull, *self._corners(key)])
-                spline = self.geometry.surface(surface, hull)
+                round_ = self.geometry.kind(surface) in ("CYLINDRICAL_SURFACE", "CONICAL_SURFACE")
+                spline = self.geometry.surface(surface, hull, self._loops(key) if round_ else ())
             own = self._own(surface)
-        self.remarks.left_out("face(s) bound their surfaces; these are read whole, and the edges as curves", f"#{key}")
+        self.remarks.left_out("face(s) end inside their surfaces: read are patches that hold them, and edges", where)
         return self._copies(spline, key, name, moves, "", *own)
+
+    def _loops(self, face: int) -> list[list[Side]]:
+        """Return the edges of the loops around a face in their order; none if one of them cannot be read."""
+        found: list[list[Side]] = []
+        for loop in (self.text.references(bound)[0] for bound in self.text.references(face)[:-1]):
+            if self.text.name(loop) == "EDGE_LOOP":
+                found.append([])
+                for way in self.text.references(loop):
+                    edge = self.text.references(way)[-1]
+                    spline = self._edge(edge)
+                    if spline is None:
+                        return []
+                    along = self.text.last_word(edge) == self.text.last_word(way)  # both as they are, or both turned
+                    found[-1].append(Side(spline.points if along else spline.points[::-1], spline.space.degree))
+        return found
 
     def _corners(self, face: int) -> list[Array]:
         found = []

@@ -11,6 +11,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import FileError, KnotworkError
+from knotwork.files.cad.around import TURN, Side, angles
 from knotwork.files.cad.shapes import spline_of
 from knotwork.files.cad.step.straight import ON_SURFACES
 from knotwork.files.cad.step.syntax import Text
@@ -293,8 +294,8 @@ class Geometry:
             found |= {face: spline for face, spline in zip(faces, made, strict=True) if spline is not None}
         return found
 
-    def surface(self, key: int, hull: Array) -> Spline:
-        """Return a surface: one without ends as large as the points of its boundary need."""
+    def surface(self, key: int, hull: Array, loops: Sequence[Sequence[Side]] = ()) -> Spline:
+        """Return a surface: one without ends as large as the points of its boundary need, and its loops."""
         with self.within(key):
             record = self.text.record(key)
             kind = self.kind(key)
@@ -315,13 +316,14 @@ class Geometry:
                     raise FileError(f"#{key} is a {kind} without ends")
                 local = frame.local(hull)
                 low, high = local.min(axis=0).tolist(), local.max(axis=0).tolist()
-                return self._quadric(kind, frame, args[2:], *map(list, zip(low, high, strict=True)))
-            return self._quadric(kind, frame, args[2:], [], [], [])
+                turn = angles(frame, loops)
+                return self._quadric(kind, frame, args[2:], turn, *map(list, zip(low, high, strict=True)))
+            return self._quadric(kind, frame, args[2:], TURN, [], [], [])
 
     def _quadric(
-        self, kind: str, frame: Frame, sizes: list[Any], x: list[float], y: list[float], z: list[float]
-    ) -> Spline:
-        turn = (0.0, 2 * math.pi)
+        self, kind: str, frame: Frame, sizes: list[Any], turn: tuple[float, float], x: list[float], y: list[float],
+        z: list[float],
+    ) -> Spline:  # fmt: skip
         numbers = [float(s) for s in sizes if not isinstance(s, str)]
         if kind == "PLANE":
             return analytic.plane(frame, x, y)
