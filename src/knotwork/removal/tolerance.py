@@ -51,6 +51,11 @@ class Tolerance:
     """
 
     def __init__(self, spline: Spline, tolerance: Any) -> None:
+        #: whether a change is measured as a Euclidean distance, and not in each component
+        self.euclidean = True
+        if type(tolerance) is float and 0 <= tolerance < math.inf and not spline.coefficients.dtype.hasobject:
+            self.given = np.array(tolerance)
+            return
         if isinstance(tolerance, Relative):
             tolerance = tolerance.fraction * _extent(spline)
         if callable(tolerance):
@@ -64,7 +69,6 @@ class Tolerance:
         if (given < 0).any():
             raise ParameterError(f"tolerance {tolerance} given; expected at least 0")
         self.given = given
-        #: whether a change is measured as a Euclidean distance, and not in each component
         self.euclidean = given.ndim == 0
 
     def measured(self, change: Array) -> Array:

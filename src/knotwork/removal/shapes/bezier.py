@@ -230,6 +230,13 @@ def scaled_by(nets: Array, rational: bool) -> int:
     return int(np.frexp(certificate.sizes(nets, rational).max(initial=0.0))[1])
 
 
+def exponents(nets: Array, at: Array, rational: bool) -> Array:
+    """Return for each of many curves what `scaled_by` does."""
+    with np.errstate(over="ignore"):
+        largest = _sizes(nets, at, rational).max(axis=1)
+    return np.frexp(largest)[1]
+
+
 def _joined(parts: list[Array]) -> tuple[Array, Array]:
     """Return arrays one behind the other, and where each begins."""
     return np.concatenate(parts), np.concatenate([[0], np.cumsum([len(p) for p in parts])])

@@ -28,8 +28,14 @@ class Features(NamedTuple):
     joints: Array
 
 
+NOTHING = Features(None, False, np.zeros(0, np.int64))
+NOTHING.joints.setflags(write=False)
+
+
 def shape_features(curve: Spline, pieces: Array, keep: Any, ends: Any, closed: bool) -> Features:
     """Return what stays of a curve with the given Bézier nets."""
+    if keep is None and not any(end_orders(ends)):
+        return NOTHING
     angle: float | None = None
     lines, count = False, len(pieces)
     joints: list[Array] = [_at_ends(curve, count, ends, closed)]

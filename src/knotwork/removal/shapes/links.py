@@ -45,6 +45,8 @@ class Queue(NamedTuple):
 
     parent: Array
     order: Array
+    #: how many candidates of each station are not reached
+    left: Array
     #: start and end of a link
     P: Array
     Q: Array
@@ -146,13 +148,10 @@ def chords(Y, limit, ends, D):
 
 
 @kernel
-def candidate(course, number, P):
-    """Write a candidate to P; return its station."""
-    m = len(course.offsets)
-    i, r = number // m, number % m
+def candidate(course, i, r, P):
+    """Write candidate r of station i to P."""
     for d in range(len(course.D)):
         P[d] = course.Y[course.at[i], d] + course.offsets[r, d]
-    return i
 
 
 @kernel
@@ -170,20 +169,27 @@ def fewest(course, queue, first, last, only):
         if only < 0 or base + r == only:
             parent[r], order[tail] = -1, base + r
             tail += 1
+    for j in range(first + 1, last + 1):
+        queue.left[j - first] = course.hi[j] - course.lo[j]
     head, far, best = 0, first, order[0]
     while head < tail:
-        end, farther = tail, far
+        end, farther, start = tail, far, far + 1
         for h in range(head, end):
-            i = candidate(course, order[h], queue.P)
+            i = order[h] // m
+            candidate(course, i, order[h] % m, queue.P)
             failing, missed = -1, 0
-            for j in range(far + 1, last + 1):
-                reached = False
+            while start < last and queue.left[start - first] == 0:
+                start += 1
+            for j in range(start, last + 1):
+                reached = queue.left[j - first] < course.hi[j] - course.lo[j]
+                if queue.left[j - first] == 0:
+                    missed = 0
+                    continue
                 for r in range(course.lo[j], course.hi[j]):
                     number = j * m + r
                     if parent[number - base] != NOT:
-                        reached = True
                         continue
-                    candidate(course, number, queue.Q)
+                    candidate(course, j, r, queue.Q)
                     if failing >= 0 and not near(queue.P, queue.Q, course.Y[failing], limit, D):
                         continue
                     found = passes(queue.P, queue.Q, course.Y, at[i] + 1, at[j], limit, D)
@@ -192,6 +198,7 @@ def fewest(course, queue, first, last, only):
                         continue
                     reached = True
                     parent[number - base], order[tail] = order[h], number
+                    queue.left[j - first] -= 1
                     tail += 1
                     if j > farther:
                         farther, best = j, number

@@ -44,6 +44,8 @@ def checked(spline: Spline) -> Spline:
     if len(spline.spaces) != 1:
         raise ParameterError(f"a spline of {len(spline.spaces)} parameters given; expected a curve")
     c = spline.coefficients
+    if c.dtype == np.float64 and c.ndim == 2:
+        return spline
     if c.dtype.kind == "c":
         c = np.stack([c.real, c.imag], axis=-1).reshape(len(c), -1)
     elif spline.scalar:
@@ -69,7 +71,9 @@ def _nets(curve: Spline, rational: bool) -> Array:
         curve = Spline.trusted(curve.spaces, curve.homogeneous, True)
     if _in_pieces(curve.space):
         n, c = curve.space.degree, curve.coefficients
-        result: Array = c[n * np.arange((len(c) - 1) // n)[:, None] + np.arange(n + 1)]
+        result = np.empty(((len(c) - 1) // n, n + 1, c.shape[1]), c.dtype)
+        result[:, :n] = c[:-1].reshape(-1, n, c.shape[1])
+        result[:, n] = c[n::n]
         return result
     return np.ascontiguousarray(to_bezier(curve)[0])
 
@@ -77,10 +81,10 @@ def _nets(curve: Spline, rational: bool) -> Array:
 def _in_pieces(space: SplineSpace) -> bool:
     """Tell whether the control points are those of the pieces: each knot inside counts as often as the degree."""
     n, t = space.degree, space.knots
-    if space.periodic or n == 0 or (len(t) - 2) % n or t[0] != t[1] or t[-1] != t[-2]:
+    if space.periodic or n == 0 or (len(t) - 2) % n or t.item(0) != t.item(1) or t.item(-1) != t.item(-2):
         return False
-    rows = t[1:-1].reshape(-1, n)
-    return bool((rows[:, 0] == rows[:, -1]).all() and (rows[1:, 0] > rows[:-1, 0]).all())
+    first, last = t[1:-1:n], t[n:-1:n]
+    return bool((first[1:] > first[:-1]).all() and (n == 1 or (first == last).all()))
 
 
 def _cost(space: SplineSpace) -> float:

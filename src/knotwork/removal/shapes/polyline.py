@@ -224,7 +224,7 @@ class Work:
         n = len(course.at)
         stops = np.unique(np.concatenate([np.flatnonzero(fixed[course.at]), np.arange(0, n, CHUNK), [n - 1]]))
         size = int(np.diff(stops).max() + 1) * len(self.offsets)
-        queue = Queue(np.empty(size, np.int64), np.empty(size, np.int64), *np.empty((2, Z.shape[1])))
+        queue = Queue(*np.empty((3, size), np.int64), *np.empty((2, Z.shape[1])))
         found = np.empty(len(Z) + 2 * len(stops) + 2, np.int64)
         return found[: route(course, queue, stops, only, found)].copy()
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from knotwork.geometry.lengths import apart, increasing
 from knotwork.removal.features import end_orders
 from knotwork.removal.result import Progress, Reduction, tell
 from knotwork.removal.shapes.between import Matching
-from knotwork.removal.shapes.bezier import Pieces, reduce_bezier, scaled_by
+from knotwork.removal.shapes.bezier import Pieces, exponents, reduce_bezier
 from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.features import Features, shape_features, turning
 from knotwork.removal.shapes.lower import fewest_pieces
@@ -85,7 +86,8 @@ class Shape(NamedTuple):
         curve = checked(spline)
         given = Tolerance(curve, tolerance).given
         allowed = given.astype(np.float64) if given.dtype == object else given
-        in_floats(np.array(curve.space.domain), "domain", ParameterError)  # what follows spreads new knots over it
+        if curve.space.exact:  # what follows spreads new knots over the domain
+            in_floats(np.array(curve.space.domain), "domain", ParameterError)
         pieces, off = nets(curve, curve.rational)
         closed = bool(curve.space.periodic or (is_closed(pieces, curve.rational) and len(pieces) > 2))
         return cls(curve, pieces, off, allowed, closed, shape_features(curve, pieces, keep, ends, closed))
@@ -202,10 +204,9 @@ def reduce_shapes(
     shapes = [Shape.of(curve, tolerance, keep, 0) for curve in curves]
     alike: dict[Any, list[int]] = defaultdict(list)
     for i, shape in enumerate(shapes):
-        rational = shape.curve.rational
-        alike[rational, shape.pieces.shape[1:], float(shape.reach), scaled_by(shape.pieces, rational)].append(i)
+        alike[shape.curve.rational, shape.pieces.shape[1:], float(shape.reach)].append(i)
     found: dict[int, Reduction] = {}
-    for some in alike.values():
+    for some in itertools.chain.from_iterable(_as_large(shapes, group) for group in alike.values()):
         result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
         lengths = _lengths(result.nets, shapes[some[0]].curve.rational)
         for k, i in enumerate(some):
@@ -213,6 +214,15 @@ def reduce_shapes(
             bound = 0.0 if made is None else _bound(shapes[i], result, k)
             found[i] = Reduction(shapes[i].curve if made is None else made, bound, "geometric", effort=effort)
     return [found[i] for i in range(len(curves))]
+
+
+def _as_large(shapes: Sequence[Shape], group: Sequence[int]) -> Iterator[list[int]]:
+    """Part a group of shapes into those that are scaled by the same power of two."""
+    pieces = [shapes[i].pieces for i in group]
+    at = np.concatenate([[0], np.cumsum([len(each) for each in pieces])])
+    by = exponents(np.concatenate(pieces), at, shapes[group[0]].curve.rational)
+    for exponent in np.unique(by):
+        yield [group[k] for k in np.flatnonzero(by == exponent)]
 
 
 def _itself(shape: Shape, effort: str, low: int) -> Reduction:
