@@ -82,10 +82,11 @@ class Curves(NamedTuple):
         """Return the square of the largest distance that may be found for each curve, rounding left out."""
         F, d = self.nets, len(self.unit)
         # how large g is, is not known yet: mostly no larger than f and some tolerances
-        largest = _sizes(F, self.at, self.rational)
-        allowance = _allowance(self.metric, 2 * largest + 4 * self.unit, F.shape[1] + 2, self.rational)
-        left = np.maximum(self.reach / _outward(d) - allowance, 0)
-        result: Array = left * left / _outward(d)
+        largest = certificate.sizes_of_all(F, self.at, self.rational)
+        slack = certificate.slack(2 * largest + 4 * self.unit, F.shape[1] + 2, self.rational)
+        allowance = certificate.length_of(slack, self.metric)
+        left = np.maximum(self.reach / certificate.outward(d) - allowance, 0)
+        result: Array = left * left / certificate.outward(d)
         return result
 
 
@@ -159,8 +160,9 @@ def reduce_bezier(
     s, _ = _joined([c.s for c in found])
     square = np.array([c.square for c in found])
     F, metric, each = given.nets, given.metric, given.each
-    sizes = _sizes(F, at, rational) + _sizes(G, where, rational)
-    bound = (np.sqrt(square) + _allowance(metric, sizes, F.shape[1] + 2, rational)) * _outward(len(metric))
+    sizes = certificate.sizes_of_all(F, at, rational) + certificate.sizes_of_all(G, where, rational)
+    slack = certificate.slack(sizes, F.shape[1] + 2, rational)
+    bound = (np.sqrt(square) + certificate.length_of(slack, metric)) * certificate.outward(len(metric))
     if not each:
         bound = np.ldexp(bound, given.exponent)
     some = where[1:] > where[:-1]
@@ -233,7 +235,7 @@ def scaled_by(nets: Array, rational: bool) -> int:
 def exponents(nets: Array, at: Array, rational: bool) -> Array:
     """Return for each of many curves what `scaled_by` does."""
     with np.errstate(over="ignore"):
-        largest = _sizes(nets, at, rational).max(axis=1)
+        largest = certificate.sizes_of_all(nets, at, rational).max(axis=1)
     return np.frexp(largest)[1]
 
 
@@ -339,31 +341,3 @@ def as_pieces(F: Array, degree: int = 3) -> Found:
     """Return a curve of that degree or less as its own pieces."""
     along = np.arange(len(F) + 1.0)
     return Found(raised(F, degree), along, along, 0.0)
-
-
-def _outward(d: int) -> float:
-    """Return what a bound is multiplied by, so that rounding cannot make it too small."""
-    return 1 + (d + 6) * 2 * certificate.ROUNDING
-
-
-def _allowance(metric: Array, sizes: Array, degrees: int, rational: bool) -> Array:
-    """Return what rounding can add to distances by the metric; sizes, shape (curves, d), of both curves together.
-
-    The degrees are the sum of both.
-
-    For the proof see `Scaled.allowance`.
-    """
-    factor = (8 * degrees + 16) if rational else (3 * degrees + 4)
-    slack = factor * certificate.ROUNDING * sizes * (1 + 2.0**-40)
-    result: Array = np.sqrt((metric * slack * slack).sum(axis=1)) * (1 + 2.0**-40)
-    return result
-
-
-def _sizes(F: Array, at: Array, rational: bool) -> Array:
-    """Return the largest coordinate of each curve in each component, shape (curves, d)."""
-    points = np.abs(F[..., :-1] / F[..., -1:] if rational else F).max(axis=1)
-    filled = at[1:] > at[:-1]
-    result = np.zeros((len(at) - 1, points.shape[1]))
-    if filled.any():
-        result[filled] = np.maximum.reduceat(points, at[:-1][filled])
-    return result

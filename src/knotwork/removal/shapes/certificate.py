@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from knotwork.arithmetic.arrays import Array
-from knotwork.removal.shapes.matching import Pair, Room, path_square
+from knotwork.removal.shapes.matching import Many, Pair, Room, path_square, path_squares
 from knotwork.removal.shapes.rematching import DEPTH, PLACES, refined
 
 #: half a unit in the last place of 1
@@ -45,17 +45,16 @@ class Scaled:
         self.exponents = np.frexp(largest)[1]
         # proof in `allowance`
         degrees = f.shape[1] + g.shape[1] - 2
-        K = (8 * degrees + 16) if rational else (3 * degrees + 4)
-        self.slack = K * ROUNDING * np.ldexp(size.sum(axis=0), -self.exponents) * (1 + 2.0**-40)
+        self.slack = slack(np.ldexp(size.sum(axis=0), -self.exponents), degrees, rational)
         self.slack = self.slack + np.ldexp(np.broadcast_to(given, (self.dim,)), -self.exponents)
         self.metric = np.ones(self.dim)
         reach = math.inf
         if self.each:
-            self.metric = np.minimum(np.ldexp(1.0, self.exponents) / np.maximum(tolerance, 5e-324), 2.0**300) ** 2
+            self.metric = _per_component(tolerance, self.exponents)
             reach = 1.0
         elif tolerance is not None:
             reach = math.ldexp(float(tolerance), -int(self.exponents[0]))
-        self.outward = 1 + (self.dim + 6) * 2 * ROUNDING
+        self.outward = outward(self.dim)
         reach = max(reach / self.outward - self.allowance, 0.0)
         self.target = reach * reach / self.outward
         self.pair = Pair(
@@ -76,7 +75,7 @@ class Scaled:
         numerators and in the denominators, a sum of at most min(p, q) + 1 products by that many ε and 6 more: less
         than (8 (p + q) + 16) ε (M + M'). Terms of second order are in the last factor of the slack.
         """
-        return math.sqrt(float(np.sum(self.metric * self.slack * self.slack))) * (1 + 2.0**-40)
+        return float(length_of(self.slack, self.metric))
 
     def bound(self, u: Array, s: Array) -> Any:
         """Return the proven bound of a path: a number, or one a component; inf if the path is not one."""
@@ -101,6 +100,70 @@ class Scaled:
             if count > 0:
                 return U[:count].copy(), S[:count].copy(), failing[failing >= 0]
             size *= 2
+
+
+def slack(sizes: Array, degrees: int, rational: bool) -> Any:
+    """Return what rounding can add to a difference in each component; sizes and degrees of both curves together.
+
+    For the proof see `Scaled.allowance`.
+    """
+    return ((8 * degrees + 16) if rational else (3 * degrees + 4)) * ROUNDING * sizes * (1 + 2.0**-40)
+
+
+def length_of(slack: Array, metric: Array) -> Any:
+    """Return a bound on the lengths of vectors, shape (…, d), by the metric."""
+    return np.sqrt((metric * slack * slack).sum(axis=-1)) * (1 + 2.0**-40)
+
+
+def outward(d: int) -> float:
+    """Return what a bound is multiplied by, so that rounding cannot make it too small."""
+    return 1 + (d + 6) * 2 * ROUNDING
+
+
+def _per_component(tolerance: Array, exponents: Array) -> Any:
+    """Return the metric that counts components in tolerances, where they are scaled by powers of two."""
+    with np.errstate(over="ignore"):
+        return np.minimum(np.ldexp(1.0, exponents) / np.maximum(tolerance, 5e-324), 2.0**300) ** 2
+
+
+def sizes_of_all(c: Array, at: Array, rational: bool) -> Any:
+    """Return the largest coordinate of each of many curves in each component, shape (curves, d)."""
+    points = np.abs(c[..., :-1] / c[..., -1:] if rational else c).max(axis=1)
+    filled = at[1:] > at[:-1]
+    result = np.zeros((len(at) - 1, points.shape[1]))
+    if filled.any():
+        result[filled] = np.maximum.reduceat(points, at[:-1][filled])
+    return result
+
+
+def path_bounds(f: Array, at: Array, g: Array, where: Array, u: Array, s: Array, path: Array, tolerance: Any) -> Any:
+    """Return what `Scaled.bound` does, for many curves one behind the other.
+
+    Parameters
+    ----------
+    f, g : ndarray, shape (N, degree + 1, d)
+        Nets; those of curve i begin at at[i] and where[i].
+    u, s : ndarray
+        Paths; that of curve i begins at path[i].
+    tolerance : float or ndarray, shape (d,)
+        As in `Scaled`.
+    """
+    each, d = np.ndim(tolerance) == 1, f.shape[2]
+    F, G = sizes_of_all(f, at, False), sizes_of_all(g, where, False)
+    largest = np.maximum(F, G)
+    exponents = np.frexp(largest if each else np.repeat(largest.max(axis=1, keepdims=True), d, axis=1))[1]
+    metric = _per_component(tolerance, exponents) if each else np.ones(exponents.shape)
+    off = slack(np.ldexp(F + G, -exponents), f.shape[1] + g.shape[1] - 2, False)
+    f, g = (np.ldexp(c, -np.repeat(exponents, np.diff(a), axis=0)[:, None]) for c, a in ((f, at), (g, where)))
+    room, many = room_for(f.shape[1] - 1, g.shape[1] - 1, d), Many(f, at, g, where, u, s, path, metric, loop(d))
+    squares, widest = np.empty(len(at) - 1), np.empty(exponents.shape)
+    path_squares(many, np.zeros((0, 0)), room, squares, widest)
+    wrong = ~(squares >= 0)
+    squares[wrong] = math.inf
+    widest[wrong] = math.inf
+    if each:
+        return np.ldexp((widest + off) * outward(d), exponents)
+    return np.ldexp((np.sqrt(squares) + length_of(off, metric)) * outward(d), exponents[:, 0])
 
 
 def certify(f: Array, g: Array, u: Array, s: Array, tolerance: Any, *, rational: bool = False) -> Certificate:

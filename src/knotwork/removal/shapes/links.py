@@ -4,6 +4,7 @@ A link from P to Q passes the points y_1 … y_m in order within ε if there are
 |P + w_k (Q - P) - y_k| <= ε: that is exactly Fréchet distance at most ε, as distances of segments are convex. Vertices
 are sought among candidates around some of the points, the *stations*. As parts of a link are links, a vertex reached
 with k + 1 links is of use only beyond the farthest station that k links reach: each candidate is expanded at most once.
+Those of the first of these stations hardly ever lead farther than those of the last, so that they may be skipped.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ class Course(NamedTuple):
     hi: Array
     #: square of the distance that may not be exceeded
     limit: float
+    #: the part of the stations of one link more, from the first on, whose candidates are not expanded
+    skipped: float
     #: a tuple as long as a point
     D: Any
 
@@ -171,11 +174,13 @@ def fewest(course, queue, first, last, only):
             tail += 1
     for j in range(first + 1, last + 1):
         queue.left[j - first] = course.hi[j] - course.lo[j]
-    head, far, best = 0, first, order[0]
+    head, far, best, late = 0, first, order[0], first
     while head < tail:
         end, farther, start = tail, far, far + 1
         for h in range(head, end):
             i = order[h] // m
+            if i < late:
+                continue
             candidate(course, i, order[h] % m, queue.P)
             failing, missed = -1, 0
             while start < last and queue.left[start - first] == 0:
@@ -209,7 +214,7 @@ def fewest(course, queue, first, last, only):
                     break
         if farther == far:
             break
-        head, far = end, farther
+        head, late, far = end, far + 1 + int((farther - far) * course.skipped), farther
     return best
 
 

@@ -32,6 +32,21 @@ class Pair(NamedTuple):
     W: Any
 
 
+class Many(NamedTuple):
+    """Pairs of polynomial curves one behind the other: see `path_bounds`."""
+
+    f: Array
+    at: Array
+    g: Array
+    where: Array
+    u: Array
+    s: Array
+    path: Array
+    #: of each curve, shape (curves, d)
+    metric: Array
+    D: Any
+
+
 class Room(NamedTuple):
     """Working space for one step."""
 
@@ -165,3 +180,13 @@ def path_square(pair, room, u, s, widest):
             for d in range(len(pair.D)):
                 widest[d] = max(widest[d], abs(room.E[k, d]))
     return largest
+
+
+@kernel(inline=False)
+def path_squares(many, product, room, squares, widest):
+    """Write what `path_square` returns and writes for each of many pairs."""
+    for i in range(len(squares)):
+        f, g = many.f[many.at[i] : many.at[i + 1]], many.g[many.where[i] : many.where[i + 1]]
+        a, b = many.path[i], many.path[i + 1]
+        pair = Pair(f, g, many.metric[i], product, many.D, many.D)
+        squares[i] = path_square(pair, room, many.u[a:b], many.s[a:b], widest[i])
