@@ -90,20 +90,18 @@ def reduce_curves(
         found = reduce(spline, tolerance, distance=distance, form=made, effort=effort, keep=keep, joints=pieces)
         return Outcome(found.spline, float(np.max(found.bound)))
 
-    together = (
-        not no_crossings
-        and distance == "geometric"
-        and not isinstance(tolerance, Relative)
-        and form in (None, "bezier")
-    )
-    some = [i for i, s in enumerate(splines) if together and (form or not _straight(s))]
     found: dict[int, Outcome] = {}
-    if some:
+    together = not no_crossings and distance == "geometric" and not isinstance(tolerance, Relative)
+    for made in ("bezier", "polyline") if together else ():
+        some = [i for i, s in enumerate(splines) if (form or ("polyline" if _straight(s) else "bezier")) == made]
+        if not some or (form == "polyline" and joints != JOINTS[0]):
+            continue
+        given = [splines[i] for i in some]
         try:
-            made = reduce_shapes([splines[i] for i in some], tolerance, effort=effort, keep=keep, joints=joints)
-            found = {i: Outcome(r.spline, float(np.max(r.bound))) for i, r in zip(some, made, strict=True)}
+            done = reduce_shapes(given, tolerance, form=made, effort=effort, keep=keep, joints=joints)
         except Exception:  # one of them cannot be reduced: which, is found one by one
-            found = {}
+            continue
+        found |= {i: Outcome(r.spline, float(np.max(r.bound))) for i, r in zip(some, done, strict=True)}
     return [found[i] if i in found else attempted(one, spline) for i, spline in enumerate(splines)]
 
 

@@ -236,7 +236,8 @@ def exponents(nets: Array, at: Array, rational: bool) -> Array:
     """Return for each of many curves what `scaled_by` does."""
     with np.errstate(over="ignore"):
         largest = certificate.sizes_of_all(nets, at, rational).max(axis=1)
-    return np.frexp(largest)[1]
+    result: Array = np.frexp(largest)[1]
+    return result
 
 
 def _joined(parts: list[Array]) -> tuple[Array, Array]:

@@ -88,9 +88,10 @@ def reduce_polylines(
             kept[0] = kept[-1] = kept[0] or kept[-1]
     result = [itself(Y, tolerance) for Y in lines]
     left = [i for i, Y in enumerate(lines) if len(Y) > 2]
-    search = searching(lines[left[0]].shape[1], tolerance, effort) if left else None
-    for margin in MARGINS if search and search.eps > 0 else ():
-        left = _tried(lines, tolerance, closed, keep, left, search.within(margin), result) if left else left
+    if left and np.all(np.asarray(tolerance) > 0):
+        search = searching(lines[left[0]].shape[1], tolerance, effort)
+        for margin in MARGINS:
+            left = _tried(lines, tolerance, closed, keep, left, search.within(margin), result) if left else left
     return result
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.features import Features, shape_features, turning
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
-from knotwork.removal.shapes.polyline import reduce_polyline
+from knotwork.removal.shapes.polyline import Polyline, reduce_polylines
 from knotwork.removal.shapes.smooth import Smooth, reduce_smooth
 from knotwork.removal.tolerance import Tolerance
 from knotwork.space import SplineSpace
@@ -181,15 +181,10 @@ def _bound(shape: Shape, found: Pieces, k: int) -> Any:
 
 
 def reduce_shapes(
-    curves: Sequence[Spline],
-    tolerance: float,
-    *,
-    effort: str = "normal",
-    keep: Any = None,
-    crossings: str = "none-new",
-    joints: str = "smooth",
-) -> list[Reduction]:
-    """Return cubic pieces that join for many curves at once, each as it would be alone, bit for bit.
+    curves: Sequence[Spline], tolerance: float, *, form: str = "bezier", effort: str = "normal", keep: Any = None,
+    crossings: str = "none-new", joints: str = "smooth",
+) -> list[Reduction]:  # fmt: skip
+    """Return cubic pieces that join, or polylines, for many curves at once, each as it would be alone, bit for bit.
 
     Left out are the matchings and the lower bounds, which take as long as the search. What makes a search for one
     curve slow is to prepare it; so curves are searched together that differ in nothing that the search sees: dimension,
@@ -206,13 +201,18 @@ def reduce_shapes(
     for i, shape in enumerate(shapes):
         alike[shape.curve.rational, shape.pieces.shape[1:], float(shape.reach)].append(i)
     found: dict[int, Reduction] = {}
-    for some in itertools.chain.from_iterable(_as_large(shapes, group) for group in alike.values()):
-        result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
-        lengths = _lengths(result.nets, shapes[some[0]].curve.rational)
-        for k, i in enumerate(some):
-            made = _joined(shapes[i], result, k, lengths)
-            bound = 0.0 if made is None else _bound(shapes[i], result, k)
-            found[i] = Reduction(shapes[i].curve if made is None else made, bound, "geometric", effort=effort)
+    for group in alike.values():
+        if form == "polyline":
+            lines = _polylines([shapes[i] for i in group], wanted)
+            found |= {i: _straight(shapes[i], line, wanted) for i, line in zip(group, lines, strict=True)}
+            continue
+        for some in _as_large(shapes, group):
+            result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
+            lengths = _lengths(result.nets, shapes[some[0]].curve.rational)
+            for k, i in enumerate(some):
+                made = _joined(shapes[i], result, k, lengths)
+                bound = 0.0 if made is None else _bound(shapes[i], result, k)
+                found[i] = Reduction(shapes[i].curve if made is None else made, bound, "geometric", effort=effort)
     return [found[i] for i in range(len(curves))]
 
 
@@ -222,7 +222,7 @@ def _as_large(shapes: Sequence[Shape], group: Sequence[int]) -> Iterator[list[in
     at = np.concatenate([[0], np.cumsum([len(each) for each in pieces])])
     by = exponents(np.concatenate(pieces), at, shapes[group[0]].curve.rational)
     for exponent in np.unique(by):
-        yield [group[k] for k in np.flatnonzero(by == exponent)]
+        yield [group[k] for k in np.flatnonzero(by == exponent).tolist()]
 
 
 def _itself(shape: Shape, effort: str, low: int) -> Reduction:
@@ -235,20 +235,35 @@ def _itself(shape: Shape, effort: str, low: int) -> Reduction:
 
 def _polyline(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     """Return fewer straight edges of a polyline."""
-    curve, pieces, closed = shape.curve, shape.pieces, shape.closed
-    if curve.space.degree != 1 or curve.rational:
-        raise ParameterError("form 'polyline' takes curves of degree 1; flatten others first")
-    points = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
-    stay = np.zeros(len(points), bool)
-    stay[shape.stay.joints] = stay[turning(pieces, False, shape.stay.angle)] = True
-    if not closed:
-        stay[[0, -1]] = [order is not None for order in end_orders(wanted.ends)]
-    found = reduce_polyline(points, shape.allowed, closed=closed, keep=stay, ends="free", effort=wanted.effort)
-    low = _lower_bound(shape, 1) + (not closed)
-    edges = np.stack([found.vertices[:-1], found.vertices[1:]], axis=1)
+    found = _polylines([shape], wanted)[0]
+    low = _lower_bound(shape, 1) + (not shape.closed)
+    return replace(_straight(shape, found, wanted), lower_bound=low, matching=Matching(found.s, found.u, shape.closed))
+
+
+def _polylines(shapes: Sequence[Shape], wanted: Wanted) -> list[Polyline]:
+    """Return few vertices for shapes of one dimension."""
+    lines, keep = [], []
+    for shape in shapes:
+        pieces, (angle, _, joints) = shape.pieces, shape.stay
+        if shape.curve.space.degree != 1 or shape.curve.rational:
+            raise ParameterError("form 'polyline' takes curves of degree 1; flatten others first")
+        lines.append(np.concatenate([pieces[:, 0], pieces[-1:, -1]]))
+        stay = np.zeros(len(pieces) + 1, bool)
+        stay[joints] = True
+        if angle is not None:
+            stay[turning(pieces, False, angle)] = True
+        if not shape.closed:
+            stay[[0, -1]] = [order is not None for order in end_orders(wanted.ends)]
+        keep.append(stay)
+    closed = [shape.closed for shape in shapes]
+    return reduce_polylines(lines, shapes[0].allowed, closed=closed, keep=keep, effort=wanted.effort)
+
+
+def _straight(shape: Shape, found: Polyline, wanted: Wanted) -> Reduction:
+    """Return what was found as a spline of degree 1."""
+    curve, closed, edges = shape.curve, shape.closed, np.stack([found.vertices[:-1], found.vertices[1:]], axis=1)
     spline = joined(edges, breaks_by_length(edges, curve.space.domain, closed), closed and curve.space.periodic)
-    matching = Matching(found.s, found.u, closed)
-    return Reduction(spline, found.bound, "geometric", (), low, None, matching, wanted.effort)
+    return Reduction(spline, found.bound, "geometric", effort=wanted.effort)
 
 
 def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:

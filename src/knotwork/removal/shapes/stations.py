@@ -265,11 +265,12 @@ def searched(lot: Lot, search: Search) -> Found:
     one, other = (
         Samples(np.empty((most, d)), np.empty((most, d)), np.empty(most), np.empty(most, np.int8)) for _ in range(2)
     )
+    at, lo, hi, stops = np.empty((4, most), np.int64)
+    Y, Z, (V, W), (u, path) = *np.empty((2, count, d)), np.empty((2, 3 * most, d)), np.empty((2, most + 1))
     space = Space(
-        *np.empty((2, count, d)), np.empty(count, bool), np.empty(count, np.int64), one, other,
-        *np.empty((4, most), np.int64), Queue(*np.empty((3, size), np.int64), *np.empty((2, d))),
-        np.empty(3 * most, np.int64), *np.empty((2, 3 * most, d)), np.empty(3 * most, np.int64),
-        *np.empty((2, most + 1)),
+        Y, Z, np.empty(count, bool), np.empty(count, np.int64), one, other, at, lo, hi, stops,
+        Queue(*np.empty((3, size), np.int64), *np.empty((2, d))), np.empty(3 * most, np.int64),
+        V, W, np.empty(3 * most, np.int64), u, path,
     )  # fmt: skip
     found = Found(np.empty((len(lot.Y), d)), *np.empty((2, total)), *np.zeros((2, len(lot.at)), np.int64))
     few_of_all(lot, search, space, found)
