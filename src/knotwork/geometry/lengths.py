@@ -8,6 +8,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.errors import ParameterError
+from knotwork.geometry.bezier import fitting, over_breaks
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
@@ -64,4 +65,4 @@ def linear(points: Array, t: Array, closed: bool = False) -> Spline:
     """Return the curve of degree 1 that is at points at increasing t; a closed one ends where it begins."""
     if closed:
         return Spline(SplineSpace(1, t, periodic=True), points[1:])
-    return Spline(SplineSpace(1, np.concatenate([t[:1], t, t[-1:]])), points)
+    return fitting(over_breaks(1, t), np.array(points))

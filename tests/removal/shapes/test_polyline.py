@@ -12,10 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import directed_hausdorff
 
+import knotwork as kw
 import oracle
 from knotwork.removal.shapes.certificate import exact_square
 from knotwork.removal.shapes.lower import fewest_pieces
-from knotwork.removal.shapes.polyline import picked, reduce_polyline
+from knotwork.removal.shapes.polyline import picked, reduce_polyline, reduce_polylines
+from knotwork.removal.shapes.reducing import reduce_shapes
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -191,3 +193,33 @@ def test_a_zigzag_takes_a_piece_for_each_turn_too_many():
     assert fewest_pieces(Y, 1.0, 1) == 16
     assert fewest_pieces(Y, 1.0, 3) == 8
     assert fewest_pieces(Y, 1.51, 1) == 1
+
+
+@given(seed=st.integers(0, 10**5), d=st.integers(1, 3), each=st.booleans())
+@settings(max_examples=30, deadline=None)
+def test_many_lines_at_once_are_what_each_is_alone(seed, d, each):
+    """Of any length and size, closed or not, with points that stay, and some that come out in a later round."""
+    rng = np.random.default_rng(seed)
+    lines, closed, keep = [], rng.random(7) < 0.5, []
+    for ring in closed:
+        Y = rng.standard_normal((int(rng.integers(1, 30)), d)).cumsum(axis=0) * float(rng.choice([0, 0.1, 1, 1e9]))
+        lines.append(np.concatenate([Y, Y[:1]]) if ring else Y)
+        keep.append(rng.random(len(lines[-1])) < rng.choice([0, 0.2]))
+    tolerance = np.full(d, 0.7) if each else 0.7
+    many = reduce_polylines(lines, tolerance, closed=closed, keep=keep, effort="fast")
+    for found, line, ring, kept in zip(many, lines, closed, keep, strict=True):
+        alone = reduce_polyline(line, tolerance, closed=bool(ring), keep=kept, ends="free", effort="fast")
+        for a, b in zip(found, alone, strict=True):
+            assert np.array_equal(a, b)
+
+
+def test_curves_reduced_together_are_what_each_is_alone():
+    rng = np.random.default_rng(3)
+    points = [rng.standard_normal((30, 2)).cumsum(axis=0) * size for size in (1, 1, 0.01, 100)]
+    curves = [kw.curve(p, degree, periodic=ring) for p in points for degree in (1, 3) for ring in (False, True)]
+    for form in ("polyline", "bezier"):
+        some = [curve for curve in curves if form == "bezier" or curve.degree == (1,)]
+        for found, curve in zip(reduce_shapes(some, 0.5, form=form), some, strict=True):
+            alone = kw.reduce(curve, 0.5, distance="geometric", form=form)
+            assert found.spline == alone.spline
+            assert found.bound == alone.bound

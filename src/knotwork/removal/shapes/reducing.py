@@ -12,7 +12,7 @@ import numpy as np
 from knotwork.arithmetic.arrays import Array, in_floats
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import joined
-from knotwork.geometry.lengths import apart, increasing
+from knotwork.geometry.lengths import apart, increasing, linear
 from knotwork.removal.features import end_orders
 from knotwork.removal.result import Progress, Reduction, tell
 from knotwork.removal.shapes.between import Matching
@@ -261,8 +261,9 @@ def _polylines(shapes: Sequence[Shape], wanted: Wanted) -> list[Polyline]:
 
 def _straight(shape: Shape, found: Polyline, wanted: Wanted) -> Reduction:
     """Return what was found as a spline of degree 1."""
-    curve, closed, edges = shape.curve, shape.closed, np.stack([found.vertices[:-1], found.vertices[1:]], axis=1)
-    spline = joined(edges, breaks_by_length(edges, curve.space.domain, closed), closed and curve.space.periodic)
+    V, space, closed = found.vertices, shape.curve.space, shape.closed
+    t = over_domain(np.sqrt(((V[1:] - V[:-1]) ** 2).sum(axis=1)), space.domain, closed)
+    spline = linear(V, t, closed and space.periodic)
     return Reduction(spline, found.bound, "geometric", effort=wanted.effort)
 
 
