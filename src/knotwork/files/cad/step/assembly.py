@@ -250,7 +250,7 @@ class Reader:
         return self._copies(spline, key, name, moves, "", *own)
 
     def _loops(self, face: int) -> list[list[Side]]:
-        """Return the edges of the loops around a face in their order; none if one of them cannot be read."""
+        """Tell of the edges of the loops around a face, in their order; nothing if one of them cannot be read."""
         found: list[list[Side]] = []
         for loop in (self.text.references(bound)[0] for bound in self.text.references(face)[:-1]):
             if self.text.name(loop) == "EDGE_LOOP":
@@ -261,7 +261,7 @@ class Reader:
                     if spline is None:
                         return []
                     along = self.text.last_word(edge) == self.text.last_word(way)  # both as they are, or both turned
-                    found[-1].append(Side(spline.points if along else spline.points[::-1], spline.space.degree))
+                    found[-1].append(Side(len(spline.coefficients), spline.space.degree, along))
         return found
 
     def _corners(self, face: int) -> list[Array]:

@@ -316,7 +316,7 @@ class Geometry:
                     raise FileError(f"#{key} is a {kind} without ends")
                 local = frame.local(hull)
                 low, high = local.min(axis=0).tolist(), local.max(axis=0).tolist()
-                turn = angles(frame, loops)
+                turn = angles(local, loops)
                 return self._quadric(kind, frame, args[2:], turn, *map(list, zip(low, high, strict=True)))
             return self._quadric(kind, frame, args[2:], TURN, [], [], [])
 
