@@ -4,7 +4,9 @@ The files that the table was made for come in packages:
 
     pip download --no-deps pyiges                          # impeller.igs
     apt-get download occt-misc freecad-common              # STEP and IGES; dpkg-deb -x each
+    apt-get download librecad-data kicad-packages3d        # DXF; 6,231 STEP files
     python benchmarks/cad.py FOLDER ...
+    python benchmarks/cad.py --every 8 FOLDER ...          # every eighth file
     python benchmarks/cad.py --mutate 10000 FOLDER ...     # a clear error or splines, every time
     python benchmarks/cad.py --large 100                   # MB of STEP, B-spline surfaces: how fast it is read
     python benchmarks/cad.py --large 100 FOLDER            # the largest STEP file there, copied until it is so large
@@ -116,10 +118,12 @@ def mutate(files: list[Path], count: int) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*", type=Path)
+    parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--mutate", type=int)
     parser.add_argument("--large", type=int, help="megabytes")
     given = parser.parse_args()
     paths = sorted(p for folder in given.folders for p in folder.rglob("*") if p.suffix.lower() in CAD and p.is_file())
+    paths = paths[:: given.every]
     if given.large:
         models = [p for p in paths if p.suffix.lower() in (".stp", ".step")]
         most = max(models, key=lambda p: p.stat().st_size, default=None)

@@ -221,11 +221,14 @@ class Reader:
 
     def _flat(self, around: dict[int, list[int]]) -> dict[int, Spline]:
         """Return the planes of faces, made at once; what is not plain is left to be read by itself."""
-        text, faces = self.text, list(around)
-        surfaces = text.reference(text.rows(np.array(faces, np.int64)), -1)
-        flat = np.flatnonzero(text.are(text.rows(surfaces), "PLANE")).tolist()
-        hulls = {k: self._hull(around[faces[k]]) for k in flat}
-        return self.geometry.planes({faces[k]: (int(surfaces[k]), hull) for k, hull in hulls.items() if len(hull)})
+        text, given = self.text, {}
+        for face, edges in around.items():
+            surface = (text.references(face) or [-1])[-1]
+            if text.is_there(surface) and text.name(surface) == "PLANE":
+                hull = self._hull(edges)
+                if len(hull):
+                    given[face] = surface, hull
+        return self.geometry.planes(given)
 
     def _hull(self, edges: list[int]) -> Array:
         """Return the control points of edges."""

@@ -110,8 +110,8 @@ class Text:
 
     def are(self, rows: Array, *names: str) -> Array:
         """Tell which rows are those of entities of some names."""
-        codes = [i for i, name in enumerate(self.index.names) if name in names]
-        found: Array = (rows >= 0) & np.isin(self.index.codes[rows], codes)
+        those = np.array([name in names for name in self.index.names], bool)
+        found: Array = (rows >= 0) & those[self.index.codes[rows]]
         return found
 
     def reference(self, rows: Array, k: int) -> Array:
@@ -163,6 +163,10 @@ class Text:
         search, rows = re.compile("|".join(names)).search, self.rows_named("")
         keys, first, last = (each[rows].tolist() for each in (self.index.keys, self.index.first, self.index.last))
         return [key for key, a, b in zip(keys, first, last, strict=True) if search(self.text, a, b)]
+
+    def is_there(self, key: int) -> bool:
+        """Tell whether there is an entity of a number."""
+        return self._rows.one(key) >= 0
 
     def name(self, key: int) -> str:
         """Return the name of an entity; '' if it is made of several."""
