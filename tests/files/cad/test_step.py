@@ -324,6 +324,10 @@ def test_edges_and_planes_made_at_once_are_those_made_one_by_one(monkeypatch: py
     assert [s.parameters for s in found[0]].count(2) == 3
     assert any("#998 is referred to, but not there" in each for each in told[0])
     assert any("reference direction" in each for each in told[0])
+    monkeypatch.undo()
+    monkeypatch.setattr(syntax, "MANY", 1)
+    alone = text.replace("(#100,#200,#300,#400)", "(#400)")  # a plane with a fault and no other beside it
+    assert [s.parameters for s in step.decode(file(alone), lambda _: None)] == [1, 1, 1, 1]
     square = found[0][0]
     assert square.points.tolist() == [[0, 2, 1], [3, 2, 1]]
 

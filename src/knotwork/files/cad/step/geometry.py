@@ -284,9 +284,10 @@ class Geometry:
         for face, (key, points) in given.items():
             try:
                 (place,) = self.text.references(key)
-                alike[len(points)].append((face, self.frame(place), points))
+                frame = self.frame(place)
             except (KnotworkError, ValueError):  # told when it is read by itself
                 continue
+            alike[len(points)].append((face, frame, points))
         found: dict[int, Spline] = {}
         for some in alike.values():
             faces, frames, hulls = zip(*some, strict=True)
