@@ -16,6 +16,8 @@ STIFF = 100
 REFUSED = 1.5
 #: samples tried for the very first piece
 FIRST = 16
+#: what is left is tried as a whole if it is at most that many times the guess: a fresh fit finds more than a longer one
+TWICE = 2
 
 
 @kernel(inline=False)
@@ -61,7 +63,7 @@ def longest(G, S, chain, start, opened, k, j, end, guess, room, effort):
     quarter more, then by halves, after a success; fewer after a failure; then bisection.
     """
     low, beyond = j, end + 1
-    high = min(j + guess, end)
+    high = end if end - j <= TWICE * guess else j + guess
     factor = 1.25
     kept(G, S, opened, k, start, j, room, 1)
     while True:
