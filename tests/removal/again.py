@@ -24,7 +24,7 @@ from knotwork import Spline, SplineSpace
 from knotwork.errors import RoundingWarning
 from removal.certificate import largest_lengths
 
-KINDS = ("plain", "rational", "periodic", "float32", "surface", "geometric")
+KINDS = ("plain", "rational", "periodic", "float32", "surface", "geometric", "varying")
 
 
 def random_curve(seed, kind="plain"):
@@ -82,35 +82,42 @@ def change_of_surface(surface, result):
     return (change.reshape(-1, surface.width) ** 2).sum(axis=1).max()
 
 
-def off_along_matching(curve, result):
-    """Return the square of the largest distance at places of the matching and between them, exactly."""
+def off_along_matching(curve, result, tolerance=None):
+    """Return the square of the largest distance at places of the matching and between them, exactly.
 
-    def values(spline, places):
-        exact = spline.in_exact_arithmetic()
+    In parts of the tolerance at each of them, if one is given.
+    """
+
+    def parameters(spline, places):
         breaks = [Fraction(x) for x in spline.space.breaks]
         count = len(breaks) - 1
         pieces = [min(int(p), count - 1) if p <= count else int(p) - count for p in places]
         parts = [p - (k if p <= count else k + count) for p, k in zip(places, pieces, strict=True)]
-        return exact([breaks[k] + r * (breaks[k + 1] - breaks[k]) for k, r in zip(pieces, parts, strict=True)])
+        return [breaks[k] + r * (breaks[k + 1] - breaks[k]) for k, r in zip(pieces, parts, strict=True)]
 
     first, second = ([Fraction(x) for x in side.tolist()] for side in (result.matching.first, result.matching.second))
     step = max(1, len(first) // 20)
     at = range(0, len(first) - 1, step)
     halves = [[(s[k] + s[k + 1]) / 2 for k in at] for s in (first, second)]
-    p = values(curve, first[::step] + halves[0])
-    q = values(result.spline, second[::step] + halves[1])
-    return ((p - q) ** 2).sum(axis=-1).max()
+    t = parameters(curve, first[::step] + halves[0])
+    p, q = curve.in_exact_arithmetic()(t), result.spline.in_exact_arithmetic()
+    squares = ((p - q(parameters(result.spline, second[::step] + halves[1]))) ** 2).sum(axis=-1)
+    return (squares if tolerance is None else squares / tolerance.in_exact_arithmetic()(t)[..., 0] ** 2).max()
 
 
 def again(kind, seed):
     """Reduce a random spline, and return by how much of the bound it is off: never above 1."""
     rng = np.random.default_rng(seed)
-    spline = random_surface(seed) if kind == "surface" else random_curve(seed, "plain" if kind == "geometric" else kind)
+    curves = {"geometric": "plain", "varying": ("plain", "rational", "periodic")[seed % 3]}
+    spline = random_surface(seed) if kind == "surface" else random_curve(seed, curves.get(kind, kind))
     size = float(np.ptp(spline.points.reshape(-1, spline.dim), axis=0).max())
     tolerance = size * 10.0 ** rng.uniform(-4, 0)
     options = {"effort": ("fast", "normal")[seed % 2]}
     if kind == "geometric":
         tolerance, options = size * 10.0 ** rng.uniform(-3, -1), {"distance": "geometric"}
+    elif kind == "varying":
+        values = size * 10.0 ** rng.uniform(-4, -1, (int(rng.integers(3, 9)), 1))
+        tolerance, options = kw.curve(values, int(rng.integers(0, 3))), {"distance": "geometric", "effort": "fast"}
     with warnings.catch_warnings():
         warnings.simplefilter("error", RoundingWarning)
         result = kw.reduce(spline, tolerance, **options)
@@ -118,6 +125,10 @@ def again(kind, seed):
         off = change_of_surface(spline, result)
     elif kind == "geometric":
         off = off_along_matching(spline, result)
+    elif kind == "varying":
+        share = off_along_matching(spline, result, tolerance)
+        assert share <= 1, f"varying {seed}: off by {float(share) ** 0.5} times the tolerance"
+        return float(share) ** 0.5
     elif kind in ("plain", "float32"):
         off = max(largest_lengths(spline, result), off_in_fractions(spline, result))
     else:

@@ -73,7 +73,7 @@ def test_it_is_never_exceeded(values, degree):
     ("tolerance", "message"),
     [
         (lambda u: u, "0 or less"),
-        (lambda u: np.nan, "not finite"),
+        (lambda u: np.nan, "at .* expected finite"),
         (kw.curve([[1, 1], [2, 2]], 1), "one component"),
         (kw.curve([1.0, 1.0], 1, [0, 0, 0.5, 0.5]), "expected it over"),
     ],
@@ -81,8 +81,3 @@ def test_it_is_never_exceeded(values, degree):
 def test_what_is_no_tolerance_is_named(tolerance, message):
     with pytest.raises(ParameterError, match=message):
         kw.reduce(F, tolerance)
-
-
-def test_only_curves_at_equal_parameters():
-    with pytest.raises(ParameterError, match="equal parameters"):
-        kw.fit(np.stack([X, X**2], axis=1), lambda u: 0.1)

@@ -37,8 +37,9 @@ def fit(
     ----------
     points : array_like, shape (m, d)
         Two or more, in order. Points that equal the one before are passed over.
-    tolerance : number, array_like, shape (d,), or relative
-        As in `reduce`.
+    tolerance : number, array_like, shape (d,), or relative, or Spline, or callable
+        As in `reduce`. One that varies does so over the parameters, or if none are given over the length of the lines
+        up to each point.
     parameters : array_like, shape (m,), optional
         Increasing; with them the distance is that at equal parameters, unless `distance` says otherwise.
     degree : int

@@ -58,8 +58,8 @@ class Tolerance:
             return
         if isinstance(tolerance, Relative):
             tolerance = tolerance.fraction * _extent(spline)
-        if callable(tolerance):
-            raise ParameterError("a tolerance over the parameter given; it is for curves at equal parameters")
+        if isinstance(tolerance, Spline) or callable(tolerance):
+            raise ParameterError("a tolerance over the parameter given; it is for curves that are reduced")
         given = real_numbers(tolerance, "tolerance", ParameterError)
         if given.shape not in ((), (spline.dim,)):
             raise ParameterError(

@@ -1,4 +1,4 @@
-"""Tolerances that vary over the parameter: what they allow each control point of a difference, at least.
+"""Tolerances that vary over the parameter: how small they are at least, and what they allow each control point.
 
 A difference Σ e_i N_i is nowhere above a tolerance τ if no |e_i| is above the least of τ where N_i is not zero: then
 |Σ e_i N_i(u)| <= Σ |e_i| N_i(u) <= τ(u) Σ N_i(u) = τ(u). The least of a spline τ over an interval is at least the least
@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, real_numbers
 from knotwork.errors import ParameterError
+from knotwork.geometry.bezier import restricted
 from knotwork.insertion.pieces import to_bezier
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
@@ -42,15 +43,9 @@ def varying(spline: Spline, tolerance: Spline | Callable[[Any], Any]) -> Varying
     A callable is taken at the knots of the curve, and is straight between them.
     """
     space = spline.space
-    over = tolerance if isinstance(tolerance, Spline) else _between_knots(space, tolerance)
-    if len(over.spaces) != 1 or over.dim != 1 or over.coefficients.dtype.kind == "c":
-        raise ParameterError(f"tolerance {str(over)[1:-1]} given; expected a real curve of one component")
-    (a, b), (low, high) = space.domain, over.space.domain
-    if not low <= a < b <= high:
-        raise ParameterError(f"tolerance over [{low}, {high}] given; expected it over [{a}, {b}]")
-    least = _least_over_intervals(over, space.breaks)
-    if not least.min() > 0:
-        raise ParameterError("a tolerance of 0 or less given at some parameters; one that varies is to be above 0")
+    breaks = space.breaks.astype(np.float64)
+    least, _ = bounds_over(over_parameter(space, tolerance), breaks[:-1], breaks[1:])
+    require_above_0(least)
     allowed = _least_where_active(space, least)
     largest = allowed.max()
     if spline.coefficients.dtype == object:
@@ -59,26 +54,56 @@ def varying(spline: Spline, tolerance: Spline | Callable[[Any], Any]) -> Varying
     return Varying(largest, largest / allowed)
 
 
+def over_parameter(space: SplineSpace, tolerance: Spline | Callable[[Any], Any]) -> Spline:
+    """Return a tolerance over the parameter as a scalar curve over the domain of a space, or raise if it is none."""
+    over = tolerance if isinstance(tolerance, Spline) else _between_knots(space, tolerance)
+    if len(over.spaces) != 1 or over.dim != 1 or over.coefficients.dtype.kind == "c":
+        raise ParameterError(f"tolerance {str(over)[1:-1]} given; expected a real curve of one component")
+    (a, b), (low, high) = space.domain, over.space.domain
+    if not low <= a < b <= high:
+        raise ParameterError(f"tolerance over [{low}, {high}] given; expected it over [{a}, {b}]")
+    return over
+
+
+def require_above_0(least: Array) -> None:
+    """Raise if a tolerance is not above 0 somewhere."""
+    if not least.min() > 0:
+        raise ParameterError("a tolerance of 0 or less given at some parameters; one that varies is to be above 0")
+
+
 def _between_knots(space: SplineSpace, tolerance: Callable[[Any], Any]) -> Spline:
     """Return the polyline through the values of a function at the distinct knots."""
     breaks = space.breaks.astype(np.float64)
-    values = np.array([float(tolerance(u)) for u in breaks.tolist()])
-    if not np.isfinite(values).all():
-        raise ParameterError(f"the tolerance at {breaks[np.argmin(np.isfinite(values))]} is not finite")
+    values = np.array([_number(tolerance(u), u) for u in breaks.tolist()])
     return Spline(SplineSpace(1, np.concatenate([breaks[:1], breaks, breaks[-1:]])), values)
 
 
-def _least_over_intervals(over: Spline, breaks: Array) -> Array:
-    """Return a lower bound of a scalar curve over each interval between breaks."""
+def _number(value: Any, u: float) -> float:
+    number = real_numbers(value, f"the tolerance at {u}", ParameterError)
+    if number.size != 1:
+        raise ParameterError(f"the tolerance at {u} is of shape {number.shape}; expected a number")
+    return float(number.item())
+
+
+def bounds_over(over: Spline, low: Array, high: Array) -> tuple[Array, Array]:
+    """Return a lower and an upper bound of a scalar curve over each interval [low, high] of its domain, low < high."""
     nets, places = to_bezier(over)
-    if over.rational:  # between the smallest and the largest of the points
-        nets = nets[..., :1] / nets[..., 1:]
-    nets = np.asarray(nets).astype(np.float64).reshape(len(places) - 1, -1)
-    least = nets.min(axis=1) - SLACK * np.abs(nets).max()
-    breaks = breaks.astype(np.float64)
-    first = np.clip(np.searchsorted(places, breaks[:-1], "right") - 1, 0, len(least) - 1)
-    last = np.clip(np.searchsorted(places, breaks[1:], "left") - 1, first, len(least) - 1)
-    return np.array([least[i : j + 1].min() for i, j in zip(first.tolist(), last.tolist(), strict=True)])
+    nets = np.asarray(nets).astype(np.float64).reshape(len(places) - 1, -1, 1 + over.rational)
+    places = places.astype(np.float64)
+    first = np.clip(np.searchsorted(places, low, "right") - 1, 0, len(nets) - 1)
+    last = np.clip(np.searchsorted(places, high, "left") - 1, first, len(nets) - 1)
+    count = last - first + 1
+    start = np.cumsum(count) - count
+    own = np.repeat(np.arange(len(first)), count)
+    piece = first[own] + np.arange(len(own)) - start[own]  # each piece of the curve that an interval reaches into
+    a, length = places[piece], places[piece + 1] - places[piece]
+    x, y = (np.clip((ends[own] - a) / length, 0, 1)[:, None] for ends in (low, high))
+    parts = restricted(nets[piece], x, y, axis=1)
+    # between the smallest and the largest of the points, of the part and of the piece
+    points, all_points = (c[..., 0] / c[..., 1] if over.rational else c[..., 0] for c in (parts, nets))
+    points = np.clip(points, all_points.min(axis=1)[piece, None], all_points.max(axis=1)[piece, None])
+    off = SLACK * np.abs(all_points).max()
+    return np.minimum.reduceat(points.min(axis=1), start) - off, np.maximum.reduceat(points.max(axis=1), start) + off
 
 
 def _least_where_active(space: SplineSpace, least: Array) -> Array:

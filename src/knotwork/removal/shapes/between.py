@@ -12,6 +12,8 @@ from knotwork.errors import ParameterError, PointError
 from knotwork.removal.shapes.alignment import aligned, coarse_square, points_at, samples
 from knotwork.removal.shapes.certificate import Scaled, exact_square, root_above
 from knotwork.removal.shapes.nets import checked, closes, exact_nets, nets
+from knotwork.removal.shapes.portions import portioned
+from knotwork.removal.varying import varies
 from knotwork.spline import Spline
 from knotwork.value import Frozen
 
@@ -19,6 +21,8 @@ _set = object.__setattr__
 #: rounds of a search for the smallest bound, when no tolerance is given; and where closed curves are tried to meet
 ROUNDS = 8
 SEAMS = 4
+#: part of a tolerance that varies that the search leaves to the rounding of places
+ROUNDED = 2.0**-30
 
 
 class Matching(Frozen):
@@ -79,7 +83,7 @@ class Matching(Frozen):
             result.append((1 - w) * breaks[piece] + w * breaks[piece + 1] + turn * (breaks[-1] - breaks[0]))
         return result[0], result[1]
 
-    def check(self, a: Spline, b: Spline, *, exact: bool = False, each: bool = False) -> Any:
+    def check(self, a: Spline, b: Spline, *, exact: bool = False, each: bool = False, tolerance: Any = None) -> Any:
         """Return the distance that the path proves, worked out anew.
 
         Parameters
@@ -90,6 +94,9 @@ class Matching(Frozen):
             Over Fractions, rounded up at the very end; else in float64 with an allowance for rounding.
         each : bool
             A bound for each component, not the Euclidean one.
+        tolerance : Spline or callable, optional
+            One that varies over the parameter of `a`, as in `reduce`: distances then count by how much less than at
+            most it allows, so the bound is for where it is largest, and elsewhere smaller in proportion.
 
         Returns
         -------
@@ -102,17 +109,23 @@ class Matching(Frozen):
             If the path does not run through both curves from end to end, every step inside one piece of each.
         """
         rational = _compared(a, b)
-        f, g = (exact_nets(c, rational) for c in (a, b)) if exact else (nets(c, rational)[0] for c in (a, b))
+        (f, off), (g, here) = (((exact_nets(c, rational), 0) if exact else nets(c, rational)) for c in (a, b))
         self._require((a, b), (f, g), rational)
+        u, s, strict = self.second, self.first, None
+        if varies(tolerance):
+            portions = portioned(a.space, f, off, tolerance, rational)
+            f, strict, off = portions.nets, portions.strict, portions.off
+            u, s = portions.of_path(u, s, exactly=exact)
         if exact:
-            u, s = (_fractions(x) for x in (self.second, self.first))
-            square, widest = exact_square(f, g, u, s, rational=rational)
+            u, s = _fractions(u), _fractions(s)
+            square, widest = exact_square(
+                f, g, u, s, rational=rational, strict=None if strict is None else _fractions(strict)
+            )
             valid = bool(square >= 0)
             bound = np.array([root_above(w * w) for w in widest.tolist()]) if each else root_above(abs(square))
         else:
-            bound = _scaled(a, b, np.zeros(f.shape[2] - rational) if each else None, rational).bound(
-                self.second, self.first
-            )
+            components = np.zeros(f.shape[2] - rational) if each else None
+            bound = Scaled(f, g, components, rational=rational, given=off + here, strict=strict).bound(u, s)
             valid = bool(np.all(np.isfinite(bound)))
         if not valid:
             raise ParameterError("a step of the matching leaves a piece of a curve: expected every joint on the path")
@@ -156,16 +169,17 @@ def distance_bound(a: Spline, b: Spline, tolerance: Any = None) -> Distance:
     a, b : Spline
         Curves of any degrees in the same dimension: rational, periodic, not clamped, with jumps. Both are run through
         in the direction of their parameters. At a jump both limits count. If both are closed, they may start anywhere.
-    tolerance : float or array_like, shape (d,), optional
+    tolerance : float or array_like, shape (d,), or Spline, or callable, optional
         In the units of the points: Euclidean, or one for each component. The search ends where this is proven.
-        Without it, a bound as small as the search finds.
+        Without it, a bound as small as the search finds. One that varies over the parameter of `a`, a spline or a
+        function as in `reduce`: the bound is then for where it is largest, and elsewhere smaller in proportion.
 
     Returns
     -------
     Distance
         ``bound``, an upper bound of the Fréchet distance, and so of the Hausdorff distance, that holds under rounding;
-        ``matching``, whose ``check(a, b)`` proves it anew; ``proven``, whether the bound is within the tolerance. If it
-        is not, that proves nothing: the curves may be nearer than the search saw.
+        ``matching``, whose ``check(a, b)`` proves it anew (with the tolerance, if that varies); ``proven``, whether the
+        bound is within the tolerance. If it is not, that proves nothing: the curves may be nearer than the search saw.
 
     Raises
     ------
@@ -188,7 +202,16 @@ def distance_bound(a: Spline, b: Spline, tolerance: Any = None) -> Distance:
     True
     """
     rational = _compared(a, b)
-    scaled = _scaled(a, b, _tolerance(tolerance, checked(a)), rational)
+    (f, there), (g, here) = (nets(c, rational) for c in (a, b))
+    portions = portioned(a.space, f, there, tolerance, rational) if varies(tolerance) else None
+    if portions is None:
+        within = _tolerance(tolerance, checked(a))
+        scaled = Scaled(f, g, within, rational=rational, given=there + here)
+    else:
+        within, given = portions.largest, portions.off + here
+        scaled = Scaled(
+            portions.nets, g, within * (1 - ROUNDED), rational=rational, given=given, strict=portions.strict
+        )
     f, g = scaled.pair.f, scaled.pair.g
     closed = closes(a, f, rational) and closes(b, g, rational)
     flat = np.full(scaled.dim, 2.0**-12)
@@ -198,8 +221,10 @@ def distance_bound(a: Spline, b: Spline, tolerance: Any = None) -> Distance:
         u, Q = _turned(scaled, P, Q, u, s)
     u, s, _ = aligned(scaled, s, u, P, Q)
     bound, u, s = _smallest(scaled, u, s) if tolerance is None else _within(scaled, u, s)
-    matching = Matching(s, u, closed)
-    return Distance(bound, matching, None if tolerance is None else bool(np.all(bound <= np.asarray(tolerance))))
+    matching = Matching(s if portions is None else portions.of_pieces(s), u, closed)
+    if portions is not None:
+        bound = matching.check(a, b, tolerance=tolerance)
+    return Distance(bound, matching, None if tolerance is None else bool(np.all(bound <= np.asarray(within))))
 
 
 def _compared(a: Spline, b: Spline) -> bool:
@@ -211,11 +236,6 @@ def _compared(a: Spline, b: Spline) -> bool:
     if dims[0] != dims[1]:
         raise PointError(f"curves in {dims[0]} and {dims[1]} dimensions given; expected the same")
     return a.rational or b.rational
-
-
-def _scaled(a: Spline, b: Spline, tolerance: Any, rational: bool) -> Scaled:
-    (f, there), (g, here) = (nets(c, rational) for c in (a, b))
-    return Scaled(f, g, tolerance, rational=rational, given=there + here)
 
 
 def _tolerance(tolerance: Any, curve: Spline) -> Any:

@@ -77,6 +77,8 @@ class Curves(NamedTuple):
     each: bool
     #: whether there is anything to search: not below the finest tolerance
     possible: bool
+    #: by how much distances from each net count: 1, or more where less is allowed
+    strict: Array
 
     def target(self) -> Array:
         """Return the square of the largest distance that may be found for each curve, rounding left out."""
@@ -85,7 +87,7 @@ class Curves(NamedTuple):
         largest = certificate.sizes_of_all(F, self.at, self.rational)
         slack = certificate.slack(2 * largest + 4 * self.unit, F.shape[1] + 2, self.rational)
         allowance = certificate.length_of(slack, self.metric)
-        left = np.maximum(self.reach / certificate.outward(d) - allowance, 0)
+        left = np.maximum(self.reach / certificate.outward(d) - allowance * self.strict.max(initial=1.0), 0)
         result: Array = left * left / certificate.outward(d)
         return result
 
@@ -93,7 +95,7 @@ class Curves(NamedTuple):
 def reduce_bezier(
     nets: Array, at: Any, tolerance: Any, *, closed: Any = False, angle: float | None = None, lines: bool = False,
     keep: Any = (), effort: str = "normal", crossings: str = "none-new", joints: str = "smooth", rational: bool = False,
-    degree: int = 3, progress: Progress | None = None,
+    degree: int = 3, progress: Progress | None = None, strict: Array | None = None,
 ) -> Pieces:  # fmt: skip
     """Return few cubic pieces within a distance of each curve, or quadratic ones.
 
@@ -127,6 +129,8 @@ def reduce_bezier(
         Of the new pieces.
     progress : callable, optional
         Called with the part that is done, after every few thousand pieces.
+    strict : ndarray, shape (N,), optional
+        By how much distances from each net count, 1 or more: there the tolerance is so much smaller.
 
     Returns
     -------
@@ -149,7 +153,7 @@ def reduce_bezier(
         if degree != 3:
             raise ParameterError(f"joints 'g1' given, and degree {degree}; only cubic pieces have handles to turn")
         angle = corners.CORNER if angle is None and nets.shape[1] > 2 else angle
-    given = prepared(nets, at, tolerance, closed, angle, lines, keep, rational)
+    given = prepared(nets, at, tolerance, closed, angle, lines, keep, rational, strict)
     how = efforts(effort, crossings, joints if degree == 3 else "free")
     nets, at = given.nets, given.at
     if not given.possible:
@@ -161,7 +165,7 @@ def reduce_bezier(
     square = np.array([c.square for c in found])
     F, metric, each = given.nets, given.metric, given.each
     sizes = certificate.sizes_of_all(F, at, rational) + certificate.sizes_of_all(G, where, rational)
-    slack = certificate.slack(sizes, F.shape[1] + 2, rational)
+    slack = certificate.slack(sizes, F.shape[1] + 2, rational) * given.strict.max(initial=1.0)
     bound = (np.sqrt(square) + certificate.length_of(slack, metric)) * certificate.outward(len(metric))
     if not each:
         bound = np.ldexp(bound, given.exponent)
@@ -187,8 +191,9 @@ def efforts(effort: str, crossings: str, joints: str) -> tuple[Effort, ...]:
 
 
 def prepared(
-    nets: Array, at: Any, tolerance: Any, closed: Any, angle: float | None, lines: bool, keep: Any, rational: bool
-) -> Curves:
+    nets: Array, at: Any, tolerance: Any, closed: Any, angle: float | None, lines: bool, keep: Any, rational: bool,
+    strict: Array | None = None,
+) -> Curves:  # fmt: skip
     """Check the input of `reduce_bezier`, scale it by a power of two, open what is closed, and mark what stays."""
     nets, at = np.ascontiguousarray(nets, np.float64), np.ascontiguousarray(at, np.int64)
     d = nets.shape[2] - rational
@@ -205,13 +210,15 @@ def prepared(
     exponent = scaled_by(nets, rational)
     F = _scaled(nets, exponent, rational)
     unit = np.ldexp(unit, -exponent)
+    strict = np.ones(len(F)) if strict is None else strict
     hard, start = np.zeros(len(F) + count, np.int8), np.zeros(count, np.int64)
     directions = np.zeros((len(F) + count, d))
-    possible = bool((unit >= FINEST).all()) and len(nets) > 0
+    possible = bool((unit >= FINEST * strict.max(initial=1.0)).all()) and len(nets) > 0
     if possible:
         unit = np.minimum(unit, 2.0**40)
         per = 1 / unit
-        F, start = _opened(F, at, per, closed, d)
+        order, start = _opened(F, at, per, closed, d)
+        F, strict = (F, strict) if order is None else (F[order], strict[order])
         a, b = np.zeros(d), np.zeros(d)
         if angle is not None:
             corners.corners(F, at, per, math.cos(math.radians(angle)), hard, a, b)
@@ -220,11 +227,11 @@ def prepared(
         cosine = math.cos(math.radians(sharp))
         corners.directions(F, at, per, closed, cosine, directions, (a, b))
         if lines:
-            corners.lines(F, at, per, hard, a, b)
+            corners.lines(F, strict, at, per, hard, a, b)
         if len(keep):
             _keep(hard, np.asarray(keep, np.int64), at, start, closed)
     metric, reach = (1 / unit**2 if possible else unit, 1.0) if each else (np.ones(d), float(unit[0]))
-    return Curves(F, at, hard, start, directions, unit, metric, reach, exponent, rational, each, possible)
+    return Curves(F, at, hard, start, directions, unit, metric, reach, exponent, rational, each, possible, strict)
 
 
 def scaled_by(nets: Array, rational: bool) -> int:
@@ -274,16 +281,16 @@ def _nothing(count: int, degree: int, width: int) -> Pieces:
     return Pieces(np.zeros((0, degree + 1, width)), none, empty, empty, none, np.zeros(count), none[:count])
 
 
-def _opened(F: Array, at: Array, per: Array, closed: Array, d: int) -> tuple[Array, Array]:
-    """Return nets of closed curves that begin where they turn most, and with which piece that is."""
-    start = np.zeros(len(at) - 1, np.int64)
+def _opened(F: Array, at: Array, per: Array, closed: Array, d: int) -> tuple[Array | None, Array]:
+    """Return the order of nets in which closed curves begin where they turn most, and with which piece that is."""
+    order, start = None, np.zeros(len(at) - 1, np.int64)
     if closed.any():
         corners.sharpest(F, at, per, closed, SCALE, start, np.zeros(d), np.zeros(d))
         sizes = np.diff(at)
         own = np.repeat(np.arange(len(sizes)), sizes)
         place = np.arange(len(F)) - at[own] + start[own]
-        F = F[at[own] + np.where(place >= sizes[own], place - sizes[own], place)]
-    return F, start
+        order = at[own] + np.where(place >= sizes[own], place - sizes[own], place)
+    return order, start
 
 
 def _keep(hard: Array, keep: Array, at: Array, start: Array, closed: Array) -> None:
@@ -309,10 +316,10 @@ def searched(
     sizes = np.diff(ends)
     more = rational or q > degree or (q == 1 and efforts[0].everywhere)
     allowed = np.where(sizes > 0, ALLOWED * (sizes + 4), 0) if more else np.maximum(sizes - 1, 0)
-    most = counted(F, ends, 1 / unit, extent(d))
+    most = counted(F, given.strict, ends, 1 / unit, extent(d))
     kind = Search if degree == 3 else QuadraticSearch
     search = kind(most + most // 2 + 64, int(allowed.max(initial=0)), unit, given.metric, q, rational)
-    lot = Lot(F, ends, given.hard, ends[:-1] + own, given.directions, given.target()[own], allowed)
+    lot = Lot(F, ends, given.hard, ends[:-1] + own, given.directions, given.target()[own], allowed, given.strict)
     found, result, i = search.fewest(lot, efforts, progress), [], 0
     for c in cuts:
         some, i = found[i : i + len(c) - 1], i + len(c) - 1

@@ -34,10 +34,14 @@ class Scaled:
     """Two curves scaled by powers of two so that the largest coordinate is about one: nothing over- or underflows.
 
     `f` and `g` are nets, shape (pieces, degree + 1, width); `tolerance` a number, one a component, or None.
-    `given` bounds, in each component, how far the nets are from the curves that are meant.
+    `given` bounds, in each component, how far the nets are from the curves that are meant; `strict`, shape (pieces,),
+    says by how much distances from each piece of f count, 1 or more: the tolerance there is so much smaller.
     """
 
-    def __init__(self, f: Array, g: Array, tolerance: Any = None, *, rational: bool = False, given: Any = 0) -> None:
+    def __init__(
+        self, f: Array, g: Array, tolerance: Any = None, *, rational: bool = False, given: Any = 0,
+        strict: Array | None = None,
+    ) -> None:  # fmt: skip
         self.dim = f.shape[2] - rational
         self.each = np.ndim(tolerance) == 1
         size = np.stack([sizes(c, rational) for c in (f, g)])
@@ -47,6 +51,8 @@ class Scaled:
         degrees = f.shape[1] + g.shape[1] - 2
         self.slack = slack(np.ldexp(size.sum(axis=0), -self.exponents), degrees, rational)
         self.slack = self.slack + np.ldexp(np.broadcast_to(given, (self.dim,)), -self.exponents)
+        strict = np.ones(len(f)) if strict is None else strict
+        self.slack = self.slack * strict.max(initial=1.0)
         self.metric = np.ones(self.dim)
         reach = math.inf
         if self.each:
@@ -60,7 +66,7 @@ class Scaled:
         self.pair = Pair(
             _scaled(f, self.exponents), _scaled(g, self.exponents), self.metric,
             products(g.shape[1] - 1, f.shape[1] - 1) if rational else np.zeros((0, 0)),
-            loop(self.dim), loop(f.shape[2]),
+            loop(self.dim), loop(f.shape[2]), strict,
         )  # fmt: skip
         self.room = room_for(f.shape[1] - 1, g.shape[1] - 1, f.shape[2])
 
@@ -136,7 +142,10 @@ def sizes_of_all(c: Array, at: Array, rational: bool) -> Any:
     return result
 
 
-def path_bounds(f: Array, at: Array, g: Array, where: Array, u: Array, s: Array, path: Array, tolerance: Any) -> Any:
+def path_bounds(
+    f: Array, at: Array, g: Array, where: Array, u: Array, s: Array, path: Array, tolerance: Any,
+    strict: Array,
+) -> Any:  # fmt: skip
     """Return what `Scaled.bound` does, for many curves one behind the other.
 
     Parameters
@@ -146,6 +155,7 @@ def path_bounds(f: Array, at: Array, g: Array, where: Array, u: Array, s: Array,
     u, s : ndarray
         Paths; that of curve i begins at path[i].
     tolerance : float or ndarray, shape (d,)
+    strict : ndarray, shape (N,)
         As in `Scaled`.
     """
     each, d = np.ndim(tolerance) == 1, f.shape[2]
@@ -153,9 +163,9 @@ def path_bounds(f: Array, at: Array, g: Array, where: Array, u: Array, s: Array,
     largest = np.maximum(F, G)
     exponents = np.frexp(largest if each else np.repeat(largest.max(axis=1, keepdims=True), d, axis=1))[1]
     metric = _per_component(tolerance, exponents) if each else np.ones(exponents.shape)
-    off = slack(np.ldexp(F + G, -exponents), f.shape[1] + g.shape[1] - 2, False)
+    off = slack(np.ldexp(F + G, -exponents), f.shape[1] + g.shape[1] - 2, False) * strict.max(initial=1.0)
     f, g = (np.ldexp(c, -np.repeat(exponents, np.diff(a), axis=0)[:, None]) for c, a in ((f, at), (g, where)))
-    room, many = room_for(f.shape[1] - 1, g.shape[1] - 1, d), Many(f, at, g, where, u, s, path, metric, loop(d))
+    room, many = room_for(f.shape[1] - 1, g.shape[1] - 1, d), Many(f, at, g, where, u, s, path, metric, loop(d), strict)
     squares, widest = np.empty(len(at) - 1), np.empty(exponents.shape)
     path_squares(many, np.zeros((0, 0)), room, squares, widest)
     wrong = ~(squares >= 0)
@@ -189,13 +199,16 @@ def certify(f: Array, g: Array, u: Array, s: Array, tolerance: Any, *, rational:
     return Certificate(scaled.bound(U, S), U, S, failing)
 
 
-def exact_square(f: Array, g: Array, u: Array, s: Array, *, rational: bool = False) -> tuple[Fraction, Array]:
+def exact_square(
+    f: Array, g: Array, u: Array, s: Array, *, rational: bool = False, strict: Array | None = None
+) -> tuple[Fraction, Array]:
     """Return the square of the bound of a path over Fractions, and each component's bound; (-1, …) if it is no path."""
     d, width = f.shape[2] - rational, f.shape[2]
     p, q = g.shape[1] - 1, f.shape[1] - 1
     ones = np.array([Fraction(1)] * d, object)
     product = _exact_products(p, q) if rational else np.zeros((0, 0), object)
-    pair = Pair(f, g, ones, product, loop(d), loop(width))
+    strict = np.array([Fraction(1)] * len(f), object) if strict is None else strict
+    pair = Pair(f, g, ones, product, loop(d), loop(width), strict)
     widest = np.array([Fraction(0)] * d, object)
     room = Room(*(np.array([[Fraction(0)] * a.shape[1]] * len(a), object) for a in room_for(q, p, width)))
     return path_square(pair, room, u, s, widest), widest

@@ -156,8 +156,8 @@ def bent(net, far, per, start, along):
 
 
 @kernel(inline=False)
-def lines(F, at, per, hard, a, b):
-    """Mark the ends of straight runs that are longer than LONG units."""
+def lines(F, strict, at, per, hard, a, b):
+    """Mark the ends of straight runs that are longer than LONG units, as they count."""
     for curve in range(len(at) - 1):
         i, hi = at[curve], at[curve + 1]
         while i < hi:
@@ -166,12 +166,12 @@ def lines(F, at, per, hard, a, b):
                 a[c] = F[i, 0, c]
                 b[c] = (F[i, F.shape[1] - 1, c] - a[c]) * per[c]
                 size += b[c] * b[c]
-            far, j = 0.0, i
+            far, j, most = 0.0, i, 0.0
             while j < hi and size > 0:
                 off, end = bent(F[j], far, per, a, b)
                 if off > LEVEL:
                     break
-                far, j = end, j + 1
-            if j > i and far * math.sqrt(size) > LONG:
+                far, j, most = end, j + 1, max(most, strict[j])
+            if j > i and far * math.sqrt(size) * most > LONG:
                 hard[i + curve] = hard[j + curve] = 1
             i = max(j, i + 1)

@@ -205,7 +205,7 @@ def proven(task, kind, space, count, window):
     """Tell whether a window is proven to be near f: 1, or 0; -1 if there is no space to tell."""
     S, k0, k1, ja, jb = space.samples, window.k0, window.k1, window.ja, window.jb
     replaced(space, kind.unit, k0, k1)
-    pair = Pair(task.F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+    pair = Pair(task.F, space.out[:count], kind.metric, kind.product, kind.D, kind.W, task.strict)
     u, s = S.u[ja : jb + 1], S.s[ja : jb + 1]
     if refined(pair, space.matching, task.target, u, s, space.u, space.s, space.failing) == 0:
         return -1

@@ -26,8 +26,8 @@ NOT = -2
 class Course(NamedTuple):
     """Points in order, and where vertices may be.
 
-    Candidate r of station i is point at[i] moved by offsets[r], lo[i] <= r < hi[i]; its number is i · m + r, m the
-    number of offsets. offsets[0] is zero.
+    Candidate r of station i is point at[i] moved by reach[at[i]] times offsets[r], lo[i] <= r < hi[i]; its number is
+    i · m + r, m the number of offsets. offsets[0] is zero.
     """
 
     Y: Array
@@ -35,8 +35,9 @@ class Course(NamedTuple):
     offsets: Array
     lo: Array
     hi: Array
-    #: square of the distance that may not be exceeded
-    limit: float
+    #: square of the distance from each point that may not be exceeded; that distance by the largest
+    limit: Array
+    reach: Array
     #: the part of the stations of one link more, from the first on, whose candidates are not expanded
     skipped: float
     #: a tuple as long as a point
@@ -84,7 +85,7 @@ def passes(P, Q, Y, lo, hi, limit, D):
         a = min(max(along, 0.0), chord)
         if a < ahead or not chord > 0:
             break
-        if (square - limit) * chord > a * (2 * along - a):
+        if (square - limit[k]) * chord > a * (2 * along - a):
             return k
         ahead = a
         k += 1
@@ -93,13 +94,13 @@ def passes(P, Q, Y, lo, hi, limit, D):
     run = 0.0
     for k in range(lo, hi):
         along, chord, square = foot(P, Q, Y[k], D)
-        rest = along * along - chord * (square - limit)
+        rest = along * along - chord * (square - limit[k])
         if chord > 0 and rest >= 0:
             root = math.sqrt(rest)
             run = max(run, along - root)
             if run > along + root or run > chord:
                 return k
-        elif chord > 0 or square > limit:
+        elif chord > 0 or square > limit[k]:
             return k
     return -1
 
@@ -116,7 +117,7 @@ def matched(P, Q, course, lo, hi, start, u):
     for k in range(hi - 1, lo - 1, -1):
         along, chord, square = foot(P, Q, course.Y[k], course.D)
         if chord > 0:
-            root = math.sqrt(max(along * along - chord * (square - course.limit), 0.0))
+            root = math.sqrt(max(along * along - chord * (square - course.limit[k]), 0.0))
             reach = max(min(reach, (along + root) / chord), 0.0)
         u[k] = start + min(u[k], reach)
 
@@ -154,7 +155,7 @@ def chords(Y, limit, ends, D):
 def candidate(course, i, r, P):
     """Write candidate r of station i to P."""
     for d in range(len(course.D)):
-        P[d] = course.Y[course.at[i], d] + course.offsets[r, d]
+        P[d] = course.Y[course.at[i], d] + course.reach[course.at[i]] * course.offsets[r, d]
 
 
 @kernel
@@ -195,7 +196,7 @@ def fewest(course, queue, first, last, only):
                     if parent[number - base] != NOT:
                         continue
                     candidate(course, j, r, queue.Q)
-                    if failing >= 0 and not near(queue.P, queue.Q, course.Y[failing], limit, D):
+                    if failing >= 0 and not near(queue.P, queue.Q, course.Y[failing], limit[failing], D):
                         continue
                     found = passes(queue.P, queue.Q, course.Y, at[i] + 1, at[j], limit, D)
                     if found >= 0:

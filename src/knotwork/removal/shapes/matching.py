@@ -30,6 +30,8 @@ class Pair(NamedTuple):
     #: as long as a point and as a row of the nets
     D: Any
     W: Any
+    #: by how much distances from each piece of f count: 1, or more where less is allowed
+    strict: Array
 
 
 class Many(NamedTuple):
@@ -45,6 +47,8 @@ class Many(NamedTuple):
     #: of each curve, shape (curves, d)
     metric: Array
     D: Any
+    #: see `Pair`
+    strict: Array
 
 
 class Room(NamedTuple):
@@ -128,24 +132,40 @@ def turn(k, count):
     return k if k < count else k - count
 
 
+@kernel
+def strict_on(pair, x, y):
+    """Return by how much distances count on a step over [x, y] of f; where it stands still, on both sides."""
+    i = piece_of(y)
+    strict = pair.strict[turn(i, len(pair.f))]
+    if x == y and i + 1 == y and y != len(pair.f):
+        strict = max(strict, pair.strict[turn(i + 1, len(pair.f))])
+    return strict
+
+
 @kernel(inline=False)
 def difference(pair, room, a, b, x, y):
-    """Write the coefficients of g - f on the step from (a, x) to (b, y) to room.E; return how many."""
+    """Write the coefficients of g - f, as they count, on the step from (a, x) to (b, y) to room.E; return how many."""
     k, i = piece_of(b), piece_of(y)
     g, f = pair.g[turn(k, len(pair.g))], pair.f[turn(i, len(pair.f))]
     p, q = len(g) - 1, len(f) - 1
     on_interval(g, a - k, b - k, room.G, room.level, pair.W)
     on_interval(f, x - i, y - i, room.F, room.level, pair.W)
-    if len(pair.product) > 0:
-        return quotients(room.E, room.G, room.F, pair.product, pair.D)
-    for n in range(p, q):
-        raised(room.G, n, pair.W)
-    for n in range(q, p):
-        raised(room.F, n, pair.W)
     m = max(p, q) + 1
-    for j in range(m):
-        for d in range(len(pair.D)):
-            room.E[j, d] = room.G[j, d] - room.F[j, d]
+    if len(pair.product) > 0:
+        m = quotients(room.E, room.G, room.F, pair.product, pair.D)
+    else:
+        for n in range(p, q):
+            raised(room.G, n, pair.W)
+        for n in range(q, p):
+            raised(room.F, n, pair.W)
+        for j in range(m):
+            for d in range(len(pair.D)):
+                room.E[j, d] = room.G[j, d] - room.F[j, d]
+    strict = strict_on(pair, x, y)
+    if strict != 1:
+        for j in range(m):
+            for d in range(len(pair.D)):
+                room.E[j, d] = strict * room.E[j, d]
     return m
 
 
@@ -188,5 +208,5 @@ def path_squares(many, product, room, squares, widest):
     for i in range(len(squares)):
         f, g = many.f[many.at[i] : many.at[i + 1]], many.g[many.where[i] : many.where[i + 1]]
         a, b = many.path[i], many.path[i + 1]
-        pair = Pair(f, g, many.metric[i], product, many.D, many.D)
+        pair = Pair(f, g, many.metric[i], product, many.D, many.D, many.strict[many.at[i] : many.at[i + 1]])
         squares[i] = path_square(pair, room, many.u[a:b], many.s[a:b], widest[i])

@@ -42,6 +42,7 @@ def reduce_polyline(
     keep: Array | None = None,
     ends: str = "fixed",
     effort: str = "normal",
+    strict: Array | None = None,
 ) -> Polyline:
     """Return a polyline with few vertices, anywhere, within a distance of a given one.
 
@@ -59,6 +60,8 @@ def reduce_polyline(
         Whether the ends of an open curve stay.
     effort : {"fast", "normal", "best"}
         How many candidates for vertices are tried.
+    strict : ndarray, shape (n - 1,), optional
+        By how much distances from each edge count, 1 or more: there the tolerance is so much smaller.
 
     Returns
     -------
@@ -74,12 +77,14 @@ def reduce_polyline(
     kept = np.zeros(len(points), bool) if keep is None else np.array(keep, bool)
     if not closed and ends == "fixed" and len(kept):
         kept[0] = kept[-1] = True
-    return reduce_polylines([points], tolerance, closed=[closed], keep=[kept], effort=effort)[0]
+    each = None if strict is None else [strict]
+    return reduce_polylines([points], tolerance, closed=[closed], keep=[kept], effort=effort, strict=each)[0]
 
 
 def reduce_polylines(
-    lines: Sequence[Array], tolerance: Any, *, closed: Sequence[bool], keep: Sequence[Array], effort: str = "normal"
-) -> list[Polyline]:
+    lines: Sequence[Array], tolerance: Any, *, closed: Sequence[bool], keep: Sequence[Array], effort: str = "normal",
+    strict: Sequence[Array] | None = None,
+) -> list[Polyline]:  # fmt: skip
     """Return a polyline with few vertices near each of those given, as `reduce_polyline` does."""
     lines = [np.ascontiguousarray(Y, float) for Y in lines]
     keep = [np.array(kept, bool) for kept in keep]
@@ -91,22 +96,26 @@ def reduce_polylines(
     if left and np.all(np.asarray(tolerance) > 0):
         search = searching(lines[left[0]].shape[1], tolerance, effort)
         for margin in MARGINS:
-            left = _tried(lines, tolerance, closed, keep, left, search.within(margin), result) if left else left
+            left = _tried(lines, tolerance, closed, keep, strict, left, search.within(margin), result) if left else left
     return result
 
 
 def _tried(
-    lines: Sequence[Array], tolerance: Any, closed: Sequence[bool], keep: list[Array], left: list[int],
-    search: Search, result: list[Polyline],
+    lines: Sequence[Array], tolerance: Any, closed: Sequence[bool], keep: list[Array], strict: Sequence[Array] | None,
+    left: list[int], search: Search, result: list[Polyline],
 ) -> list[int]:  # fmt: skip
     """Search for some of the lines, and put what is proven among the results; return those to be tried again."""
     Y = [lines[i] for i in left]
     at = np.concatenate([[0], np.cumsum([len(each) for each in Y])])
     every = np.concatenate(Y)
     rings = np.array([closed[i] for i in left])
-    found = searched(Lot(every, at, np.concatenate([keep[i] for i in left]), rings), search)
+    on_edges = np.ones(len(every)) if strict is None else np.concatenate([np.append(strict[i], 0.0) for i in left])
+    on_edges[at[1:] - 1] = 0
+    found = searched(Lot(every, at, np.concatenate([keep[i] for i in left]), rings, on_edges), search)
     V, v, j = found.V, found.vertices, found.nodes
-    bounds = path_bounds(*edges(every, at), *edges(V[: v[-1]], v), found.u, found.s, j, tolerance)
+    bounds = path_bounds(
+        *edges(every, at), *edges(V[: v[-1]], v), found.u, found.s, j, tolerance, on_edges[on_edges > 0]
+    )
     good = (bounds <= tolerance).reshape(len(left), -1).all(axis=1)
     again = []
     for k, i in enumerate(left):
@@ -145,9 +154,9 @@ def picked(points: Array, tolerance: Any) -> Polyline:
     D, s = extent(Y.shape[1]), np.arange(len(Y)).astype(float)
     u, room = np.empty(len(Y)), np.empty(len(Y), np.int64)
     for margin in MARGINS:
-        limit = (eps * (1 - margin)) ** 2
+        limit = np.full(len(Z), (eps * (1 - margin)) ** 2)
         ends = room[: chords(Z, limit, room, D)]
-        match_route(Course(Z, ends, Z, ends, ends, limit, 0.0, D), ends, Z[ends], u)
+        match_route(Course(Z, ends, Z, ends, ends, limit, limit, 0.0, D), ends, Z[ends], u)
         bound = Scaled(_nets(Y), _nets(Y[ends]), tolerance).bound(u, s)
         if np.all(bound <= tolerance):
             return Polyline(Y[ends], u, s, bound)

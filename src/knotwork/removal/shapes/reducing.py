@@ -22,13 +22,18 @@ from knotwork.removal.shapes.features import Features, shape_features, turning
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
 from knotwork.removal.shapes.polyline import Polyline, reduce_polylines
+from knotwork.removal.shapes.portions import Portions, along, portioned
 from knotwork.removal.shapes.smooth import Smooth, reduce_smooth
+from knotwork.removal.shapes.vertices import vertices
 from knotwork.removal.tolerance import Tolerance
+from knotwork.removal.varying import varies
 from knotwork.space import SplineSpace
 from knotwork.spline import Spline
 
 #: part of the tolerance that counts as lost if anything does
 LEAST = 2.0**-30
+#: parts of the tolerance that the chords of a curve may take where a polyline is asked for, one after the other
+CHORDS = (2.0**-5, 2.0**-7, 2.0**-9)
 
 
 class Wanted(NamedTuple):
@@ -51,7 +56,7 @@ def reduce_shape(spline: Spline, tolerance: Any, form: str, wanted: Wanted) -> R
     ----------
     spline : Spline
         A curve of any degree and dimension; rational and periodic ones too.
-    tolerance : number, array_like or relative
+    tolerance : number, array_like, relative, Spline or callable
         As in `reduce`: a Fréchet distance, or one per component.
     form : {"spline", "bezier", "polyline"}
         A smooth spline with simple knots, cubic pieces that join, or straight edges.
@@ -67,7 +72,7 @@ def reduce_shape(spline: Spline, tolerance: Any, form: str, wanted: Wanted) -> R
     found = as_point(shape, degree) if wanted.small == "drop" and shape.closed and not len(shape.stay.joints) else None
     found = found or SEARCHES[form](shape, degree, wanted)
     tell(wanted.progress, 1.0)
-    return found
+    return found if shape.portions is None else _along_pieces(shape, found, tolerance)
 
 
 class Shape(NamedTuple):
@@ -79,18 +84,29 @@ class Shape(NamedTuple):
     allowed: Any
     closed: bool
     stay: Features
+    #: those nets, if the tolerance varies
+    portions: Portions | None = None
 
     @classmethod
     def of(cls, spline: Spline, tolerance: Any, keep: Any, ends: Any) -> Shape:
         """Return a spline as a shape, or raise if it is none."""
         curve = checked(spline)
-        given = Tolerance(curve, tolerance).given
-        allowed = given.astype(np.float64) if given.dtype == object else given
+        allowed = None
+        if not varies(tolerance):
+            given = Tolerance(curve, tolerance).given
+            allowed = given.astype(np.float64) if given.dtype == object else given
         if curve.space.exact:  # what follows spreads new knots over the domain
             in_floats(np.array(curve.space.domain), "domain", ParameterError)
         pieces, off = nets(curve, curve.rational)
         closed = bool(curve.space.periodic or (is_closed(pieces, curve.rational) and len(pieces) > 2))
-        return cls(curve, pieces, off, allowed, closed, shape_features(curve, pieces, keep, ends, closed))
+        stay = shape_features(curve, pieces, keep, ends, closed)
+        if allowed is not None:
+            return cls(curve, pieces, off, allowed, closed, stay)
+        found = portioned(
+            curve.space, pieces, off, tolerance, curve.rational, _whole(curve, len(pieces), stay.joints, closed)
+        )
+        stay = stay._replace(joints=np.searchsorted(found.places, stay.joints))
+        return cls(curve, found.nets, found.off, found.largest * (1 - LEAST), closed, stay, found)
 
     @property
     def each(self) -> bool:
@@ -111,7 +127,22 @@ class Shape(NamedTuple):
     @property
     def slack(self) -> Any:
         """How far the nets may be off: a distance, or one in each component."""
-        return self.off if self.each else float(np.sqrt((self.off**2).sum())) * (1 + 2.0**-40)
+        return self.off if self.each else float(np.sqrt((self.off**2).sum())) * (1 + 2.0**-40) * self.strictest
+
+    @property
+    def strict(self) -> Array | None:
+        """By how much distances from each net count; None if all count alike."""
+        return None if self.portions is None else self.portions.strict
+
+    @property
+    def strictest(self) -> float:
+        """By how much distances count at most."""
+        return 1.0 if self.portions is None else float(self.portions.strict.max())
+
+    @property
+    def number(self) -> int:
+        """How many polynomial pieces the curve has."""
+        return len(self.curve.space.breaks) - 1
 
 
 def as_point(shape: Shape, degree: int) -> Reduction | None:
@@ -124,7 +155,8 @@ def as_point(shape: Shape, degree: int) -> Reduction | None:
     given = np.concatenate([net, np.ones((1, degree + 1, 1))], axis=2) if curve.rational else net
     s = np.arange(len(pieces) + 1.0)
     u = s / len(pieces)
-    bound = Scaled(pieces, given, shape.allowed, rational=curve.rational, given=shape.off).bound(u, s)
+    scaled = Scaled(pieces, given, shape.allowed, rational=curve.rational, given=shape.off, strict=shape.strict)
+    bound = scaled.bound(u, s)
     if not np.all(bound <= shape.allowed):
         return None
     spline = joined(net, np.array(curve.space.domain, float), curve.space.periodic)
@@ -136,7 +168,7 @@ def _bezier(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     found, closed = _pieces([shape], degree, wanted), shape.closed
     low = degree * _lower_bound(shape, degree) + (not closed)
     spline = _joined(shape, found, 0, _lengths(found.nets, shape.curve.rational))
-    if spline is None:
+    if spline is None or (shape.portions and len(found.nets) >= shape.number and not _may_grow(shape, degree, wanted)):
         return _itself(shape, wanted.effort, low)
     matching = Matching(found.s + found.start[0], found.u, closed)
     return Reduction(spline, _bound(shape, found, 0), "geometric", (), low, None, matching, wanted.effort)
@@ -151,6 +183,7 @@ def _pieces(shapes: Sequence[Shape], degree: int, wanted: Wanted) -> Pieces:
         np.concatenate([shape.pieces for shape in shapes]), at, shapes[0].reach, degree=degree,
         closed=[shape.closed for shape in shapes], angle=angle, lines=lines, keep=joints, effort=wanted.effort,
         crossings=wanted.crossings, joints=wanted.joints, rational=shapes[0].curve.rational, progress=wanted.progress,
+        strict=None if shapes[0].strict is None else np.concatenate([shape.strict for shape in shapes]),
     )  # fmt: skip
 
 
@@ -203,8 +236,10 @@ def reduce_shapes(
     found: dict[int, Reduction] = {}
     for group in alike.values():
         if form == "polyline":
-            lines = _polylines([shapes[i] for i in group], wanted)
-            found |= {i: _straight(shapes[i], line, wanted) for i, line in zip(group, lines, strict=True)}
+            found |= {i: _polyline(shapes[i], 1, wanted) for i in group if not _plain(shapes[i].curve)}
+            plain = [i for i in group if i not in found]
+            lines = _polylines([shapes[i] for i in plain], wanted) if plain else []
+            found |= {i: _straight(shapes[i], line, wanted) for i, line in zip(plain, lines, strict=True)}
             continue
         for some in _as_large(shapes, group):
             result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
@@ -225,38 +260,113 @@ def _as_large(shapes: Sequence[Shape], group: Sequence[int]) -> Iterator[list[in
         yield [group[k] for k in np.flatnonzero(by == exponent).tolist()]
 
 
+def _may_grow(shape: Shape, degree: int, wanted: Wanted) -> bool:
+    """Tell whether there may be more new pieces than there are: see `searched`."""
+    own = shape.curve.space.degree
+    return shape.curve.rational or own > degree or (own == 1 and wanted.joints == "g1")
+
+
+def _whole(curve: Spline, count: int, joints: Array, closed: bool) -> Array | None:
+    """Return which pieces stay as they are: between two joints that do, if they are of a kind that can."""
+    if curve.rational or curve.space.degree > 3:
+        return None
+    stay = np.zeros(count + 1, bool)
+    stay[joints] = True
+    stay[0] |= not closed
+    stay[-1] = stay[0]
+    result: Array = stay[:-1] & stay[1:]
+    return result
+
+
+def _along_pieces(shape: Shape, found: Reduction, tolerance: Any) -> Reduction:
+    """Return what was found for the portions of a curve with its matching along the pieces, and what that proves."""
+    if found.spline is shape.curve:
+        return found
+    assert shape.portions is not None
+    first = shape.portions.of_pieces(found.matching.first)
+    matching = Matching(first, found.matching.second, found.matching.closed)
+    bound = matching.check(shape.curve, found.spline, tolerance=tolerance)
+    if not bound <= shape.portions.largest:  # what rounding can do is less than what was left for it
+        return _itself(shape, found.effort or "normal", found.lower_bound or 1)
+    return replace(found, bound=bound, matching=matching)
+
+
 def _itself(shape: Shape, effort: str, low: int) -> Reduction:
     """Return the curve as its own reduction."""
-    along = np.arange(float(len(shape.pieces) + 1))
+    along = np.arange(shape.number + 1.0)
     bound = np.zeros(shape.curve.dim) if shape.each else 0.0
     matching = Matching(along, along, shape.curve.space.periodic)
     return Reduction(shape.curve, bound, "geometric", (), low, None, matching, effort)
 
 
 def _polyline(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
-    """Return fewer straight edges of a polyline."""
-    found = _polylines([shape], wanted)[0]
+    """Return fewer straight edges of a polyline, or of the chords of another curve."""
     low = _lower_bound(shape, 1) + (not shape.closed)
+    if not _plain(shape.curve):
+        return _by_chords(shape, wanted, low)
+    found = _polylines([shape], wanted)[0]
+    if shape.portions and len(found.vertices) > shape.number:
+        return _itself(shape, wanted.effort, low)
     return replace(_straight(shape, found, wanted), lower_bound=low, matching=Matching(found.s, found.u, shape.closed))
 
 
+def _plain(curve: Spline) -> bool:
+    """Tell whether a curve is a polyline that does not jump."""
+    return curve.space.degree == 1 and not curve.rational and not _jumps(curve)
+
+
+def _jumps(curve: Spline) -> bool:
+    return bool((curve.space.joints[1] > curve.space.degree).any())
+
+
 def _polylines(shapes: Sequence[Shape], wanted: Wanted) -> list[Polyline]:
-    """Return few vertices for shapes of one dimension."""
-    lines, keep = [], []
-    for shape in shapes:
-        pieces, (angle, _, joints) = shape.pieces, shape.stay
-        if shape.curve.space.degree != 1 or shape.curve.rational:
-            raise ParameterError("form 'polyline' takes curves of degree 1; flatten others first")
-        lines.append(np.concatenate([pieces[:, 0], pieces[-1:, -1]]))
-        stay = np.zeros(len(pieces) + 1, bool)
-        stay[joints] = True
-        if angle is not None:
-            stay[turning(pieces, False, angle)] = True
-        if not shape.closed:
-            stay[[0, -1]] = [order is not None for order in end_orders(wanted.ends)]
-        keep.append(stay)
+    """Return few vertices for polylines of one dimension and tolerance."""
+    lines = [np.concatenate([shape.pieces[:, 0], shape.pieces[-1:, -1]]) for shape in shapes]
+    keep = [_kept(shape, np.arange(len(shape.pieces) + 1), wanted) for shape in shapes]
     closed = [shape.closed for shape in shapes]
-    return reduce_polylines(lines, shapes[0].allowed, closed=closed, keep=keep, effort=wanted.effort)
+    strict = None if shapes[0].portions is None else [shape.portions.strict for shape in shapes if shape.portions]
+    return reduce_polylines(lines, shapes[0].allowed, closed=closed, keep=keep, effort=wanted.effort, strict=strict)
+
+
+def _kept(shape: Shape, first: Array, wanted: Wanted) -> Array:
+    """Return which vertices stay, where the pieces begin at those `first`."""
+    angle, _, joints = shape.stay
+    stay = np.zeros(first[-1] + 1, bool)
+    stay[first[joints]] = True
+    if angle is not None:
+        stay[first[turning(shape.pieces, shape.curve.rational, angle)]] = True
+    if not shape.closed:
+        stay[[0, -1]] = [order is not None for order in end_orders(wanted.ends)]
+    return stay
+
+
+def _by_chords(shape: Shape, wanted: Wanted, low: int) -> Reduction:
+    """Return few straight edges near a curve: of its chords, which take a part of the tolerance.
+
+    There are more and more chords until the result is proven. Where there is none, a polyline that jumps is its own.
+    """
+    curve, allowed = shape.curve, shape.allowed
+    strict = np.ones(len(shape.pieces)) if shape.strict is None else shape.strict
+    for share in CHORDS if np.all(allowed > 0) else ():
+        by = vertices(shape.pieces, curve.rational, np.expand_dims(share / 2 * allowed, 0) / strict[:, None])
+        if shape.closed:
+            by.points[-1] = by.points[0]
+        found = reduce_polylines(
+            [by.points], allowed * (1 - share), closed=[shape.closed], keep=[_kept(shape, by.first, wanted)],
+            effort=wanted.effort, strict=None if shape.strict is None else [np.repeat(strict, np.diff(by.first))],
+        )[0]  # fmt: skip
+        made = _straight(shape, found, wanted)
+        g, here = nets(made.spline, curve.rational)
+        given = shape.off + here
+        scaled = Scaled(shape.pieces, g, allowed, rational=curve.rational, given=given, strict=shape.strict)
+        u, s, _ = scaled.refined(found.u, along(by.places, found.s))
+        bound = scaled.bound(u, s)
+        if np.all(bound <= allowed):
+            return replace(made, bound=bound, lower_bound=low, matching=Matching(s, u, shape.closed))
+    if curve.space.degree == 1 and not curve.rational:
+        return _itself(shape, wanted.effort, low)
+    why = "it jumps" if _jumps(curve) else f"{allowed} is as small as rounding"
+    raise ParameterError(f"no polyline within the tolerance of a curve of degree {curve.space.degree}: {why}")
 
 
 def _straight(shape: Shape, found: Polyline, wanted: Wanted) -> Reduction:
@@ -275,6 +385,7 @@ def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     found = reduce_smooth(
         shape.pieces, allowed, closed=closed, periodic=periodic, angle=angle, lines=lines, keep=joints,
         effort=wanted.effort, crossings=wanted.crossings, rational=rational, progress=wanted.progress,
+        strict=shape.strict,
     )  # fmt: skip
     low = _lower_bound(shape, degree) + (0 if closed else degree)
     for smooth in sorted(found, key=lambda each: len(each.points)):
@@ -282,7 +393,7 @@ def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
             return _itself(shape, wanted.effort, low)
         spline = _spline(smooth, curve.space.domain, periodic)
         g, here = nets(spline, rational)
-        scaled = Scaled(shape.pieces, g, allowed, rational=rational, given=shape.off + here)
+        scaled = Scaled(shape.pieces, g, allowed, rational=rational, given=shape.off + here, strict=shape.strict)
         u, s, _ = scaled.refined(*_around(smooth, len(shape.pieces), len(g)))
         bound = scaled.bound(u, s)
         if np.all(bound <= allowed):  # all but for rounding
@@ -331,7 +442,7 @@ def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:
 
 def _lower_bound(shape: Shape, degree: int) -> int:
     """Return how many pieces there must be at least, from the ends of the given pieces."""
-    pieces, allowed = shape.pieces, shape.allowed
+    pieces, allowed = shape.pieces, shape.allowed if shape.portions is None else shape.portions.most
     ends = np.concatenate([pieces[:, 0], pieces[-1:, -1]])
     points = ends[:, :-1] / ends[:, -1:] if shape.curve.rational else ends
     if np.ndim(allowed) == 0 and not allowed > 0:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.matching import difference, largest_square, piece_of, turn
+from knotwork.removal.shapes.matching import difference, largest_square, piece_of, strict_on, turn
 
 #: parameters tried at once where a step fails, and how often a step is halved after that
 PLACES = 16
@@ -151,7 +151,7 @@ def halved(pair, room, target, b, y, U, S, count):
     """
     stack = room.stack
     stack[0, 0], stack[0, 1], stack[0, 2] = b, y, 0
-    top, failed = 0, False
+    top, failed, strict = 0, False, strict_on(pair, S[count - 1], y)
     while top >= 0:
         if count + DEPTH + 2 > len(U):
             return 0
@@ -167,7 +167,7 @@ def halved(pair, room, target, b, y, U, S, count):
             half = (a + b) / 2 if of_g else (x + y) / 2
             other, square = partner(pair, room, of_g, half, x if of_g else a, y if of_g else b)
             u, s = (half, other) if of_g else (other, half)
-            if square <= target and (u > a or s > x) and (u < b or s < y):
+            if square * (strict * strict) <= target and (u > a or s > x) and (u < b or s < y):
                 stack[top, 2] = depth + 1
                 top += 1
                 stack[top, 0], stack[top, 1], stack[top, 2] = u, s, depth + 1
@@ -194,7 +194,8 @@ def extended(pair, room, target, b, y, U, S, count):
     if square <= target or ends > target:
         U[count], S[count] = b, y
         return count + 1 if square <= target else -count - 1
-    nodes = PLACES - 1 if spread(pair, room, target, a, b, x, y) else 0
+    strict = strict_on(pair, x, y)
+    nodes = PLACES - 1 if spread(pair, room, target / (strict * strict), a, b, x, y) else 0
     n = 1
     while n <= nodes + 1:
         u, s = (room.places[0, n], room.places[1, n]) if n <= nodes else (b, y)

@@ -46,7 +46,7 @@ def forced(F, per, fine, end, S, last, failing, room):
         for i in range(b, a, -1):
             for c in range(len(room.D)):
                 fine.y[at, c] = fine.y[i, c]
-            fine.s[at], fine.arc[at] = fine.s[i], fine.arc[i]
+            fine.s[at], fine.arc[at], fine.strict[at] = fine.s[i], fine.arc[i], fine.strict[i]
             fine.hard[at] = FORCED if failing[j] >= 0 and i < b else fine.hard[i]
             at -= 1
         if failing[j] >= 0 and b - a == 1:
@@ -54,6 +54,7 @@ def forced(F, per, fine, end, S, last, failing, room):
             s = s if x + (y - x) / 8 < s < y - (y - x) / 8 else (x + y) / 2
             fine_sample(F, s, per, fine, at, room)
             fine.arc[at] = fine.arc[a] + (fine.arc[at + 1] - fine.arc[a]) * (s - x) / (y - x)
+            fine.strict[at] = fine.strict[a]
             at -= 1
     return end + new
 

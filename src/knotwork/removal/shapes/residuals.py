@@ -161,7 +161,8 @@ def fairness(G, k0, k1, room, state, weight):
 def node(G, k, t, S, j, along, sample, room):
     """Write the distance of g(k + t) from the parabola of gap j to room.d; return how far along the chord its foot is.
 
-    Feet never run back behind `along`. Or, if `sample`, the distance from the sample at the end.
+    Feet never run back behind `along`. Or, if `sample`, the distance from the sample at the end. Distances and values
+    are written as they count there.
     """
     y, a, d, B, D = S.y, S.a, room.d, room.B, room.D
     bernstein(t, B)
@@ -175,6 +176,12 @@ def node(G, k, t, S, j, along, sample, room):
     w = 1.0 if sample else min(max(w, along), 1.0)
     for c in range(len(D)):
         d[c] -= w * (y[j + 1, c] - y[j, c]) + 4 * w * (1 - w) * a[j, c]
+    strict = max(S.strict[j], S.strict[j + 1]) if sample else S.strict[j]
+    if strict != 1:
+        for c in range(len(D)):
+            d[c] *= strict
+        for i in range(4):
+            B[i] *= strict
     return w
 
 
@@ -200,6 +207,7 @@ def measured(G, k0, k1, S, ja, jb, room, state, half, limit, fair):
             way = (k + 1 - a) * room.speed[k - k0] + (b - last) * room.speed[last - k0]
             for i in range(k + 1, last):
                 way += room.speed[i - k0]
+        way *= S.strict[j]
         most = min(NODES, 1 + int(DENSE * (b - a)))
         count = 0 if way <= LONG else (most if not way < most else 1 + int(way))
         along, i = 0.0, 1

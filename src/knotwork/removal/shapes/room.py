@@ -30,6 +30,8 @@ class Samples(NamedTuple):
     u: Array
     #: which fine sample this is
     fine: Array
+    #: by how much distances from the gap behind this count
+    strict: Array
 
 
 class Frame(NamedTuple):
@@ -108,7 +110,7 @@ class Room(NamedTuple):
 
 def samples(count: int, d: int) -> Samples:
     """Return space for samples of a curve in d dimensions."""
-    flat = (np.zeros(count), np.zeros(count, np.int8), np.zeros(count), np.zeros(count, np.int64))
+    flat = (np.zeros(count), np.zeros(count, np.int8), np.zeros(count), np.zeros(count, np.int64), np.zeros(count))
     return Samples(np.zeros(count), np.zeros((count, d)), np.zeros((count, d)), *flat)
 
 

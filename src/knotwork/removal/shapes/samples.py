@@ -8,6 +8,8 @@ from knotwork.arithmetic.kernel import kernel
 
 #: how near the parabola of a gap is to the fine samples in it
 MERGED = 0.03
+#: gaps are merged only if what counts most of them counts by so much more than what counts least
+UNLIKE = 1.25
 #: gaps merged into one at most
 STRIDE = 64
 #: squares of sagitta over chord, above which a gap is not merged
@@ -17,10 +19,10 @@ PARTS = (4, 4096)
 
 
 @kernel(inline=False)
-def parts(net, per, D):
+def parts(net, per, strict, D):
     """Return into how many parts a Bézier piece is cut: chords within half a unit, two fine samples each; lines stay.
 
-    `per` holds one over the unit in each component.
+    `per` holds one over the unit in each component; `strict` says by how much distances count.
     """
     n = len(net) - 1
     largest = 0.0
@@ -32,7 +34,7 @@ def parts(net, per, D):
         largest = max(largest, square)
     if n == 1:
         return 1
-    count = math.sqrt(n * (n - 1) / 8 * math.sqrt(largest) / 0.5)
+    count = math.sqrt(n * (n - 1) / 8 * math.sqrt(largest) * strict / 0.5)
     return 2 * max(PARTS[0], min(PARTS[1], int(count) + 1)) if count < PARTS[1] else 2 * PARTS[1]
 
 
@@ -52,19 +54,19 @@ def point(net, t, room):
 
 
 @kernel(inline=False)
-def counted(F, at, per, D):
+def counted(F, strict, at, per, D):
     """Return how many fine samples the curve with most of them has; at[i] is where curve i begins."""
     most = 0
     for curve in range(len(at) - 1):
         count = 1
         for i in range(at[curve], at[curve + 1]):
-            count += parts(F[i], per, D)
+            count += parts(F[i], per, strict[i], D)
         most = max(most, count)
     return most
 
 
 @kernel(inline=False)
-def finely(F, per, hard, fine, room):
+def finely(F, strict, per, hard, fine, room):
     """Write fine samples of a curve, in units of the tolerance from its first point; return the number of the last one.
 
     hard[i] marks a joint that stays. Samples on top of the one before are left out, but for hard ones.
@@ -74,10 +76,10 @@ def finely(F, per, hard, fine, room):
     for c in range(len(D)):
         p[1, c] = p[0, c]
         fine.y[0, c] = 0
-    fine.s[0], fine.arc[0], fine.hard[0] = 0, 0, 1
+    fine.s[0], fine.arc[0], fine.hard[0], fine.strict[0] = 0, 0, 1, 0
     j = 0
     for i in range(len(F)):
-        count = parts(F[i], per, D)
+        count = parts(F[i], per, strict[i], D)
         for m in range(1, count + 1):
             point(F[i], m / count, room)
             square = 0.0
@@ -86,9 +88,10 @@ def finely(F, per, hard, fine, room):
                 fine.y[j + 1, c] = value
                 square += (value - fine.y[j, c]) * (value - fine.y[j, c])
             joint = m == count and (i + 1 == len(F) or hard[i + 1] != 0)
+            fine.strict[j] = max(fine.strict[j], strict[i])
             if square > 0 or joint:
                 j += 1
-                fine.s[j] = i + m / count
+                fine.s[j], fine.strict[j] = i + m / count, 0
                 fine.arc[j] = fine.arc[j - 1] + math.sqrt(square)
                 fine.hard[j] = 1 if joint else 0
     return j
@@ -114,6 +117,12 @@ def parabola(fine, i, stride, straight, d, D):
         square += d[c] * d[c]
     if square > BENT * chord:
         return False
+    strict, loose = fine.strict[i], fine.strict[i]
+    for j in range(i + 1, i + stride):
+        strict, loose = max(strict, fine.strict[j]), min(loose, fine.strict[j])
+    if strict > UNLIKE * loose:
+        return False
+    near = MERGED / strict
     before = 0.0
     for j in range(i + 1, i + stride):
         foot = 0.0
@@ -127,7 +136,7 @@ def parabola(fine, i, stride, straight, d, D):
         for c in range(len(D)):
             away = y[j, c] - y[i, c] - w * (y[i + stride, c] - y[i, c]) - 4 * w * (1 - w) * d[c]
             square += away * away
-        if square > MERGED * MERGED:
+        if square > near * near:
             return False
     if straight:  # the parabola has to be near the edges too
         before = 0.0
@@ -141,7 +150,7 @@ def parabola(fine, i, stride, straight, d, D):
                 middle = (y[j, c] + y[j + 1, c]) / 2 - y[i, c]
                 away = middle - w * (y[i + stride, c] - y[i, c]) - 4 * w * (1 - w) * d[c]
                 square += away * away
-            if square > MERGED * MERGED:
+            if square > near * near:
                 return False
     return True
 
@@ -159,6 +168,7 @@ def merged(fine, last, straight, S, room):
             S.y[j, c] = fine.y[i, c]
             S.a[j, c] = 0
         S.s[j], S.arc[j], S.hard[j], S.fine[j] = fine.s[i], fine.arc[i], 1 if fine.hard[i] == 1 else 0, i
+        S.strict[j] = 0
         if i == last:
             return j
         ahead = max(ahead, i + 1)
@@ -169,5 +179,7 @@ def merged(fine, last, straight, S, room):
             stride *= 2
             for c in range(len(D)):
                 S.a[j, c] = d[c]
+        for m in range(i, i + stride):
+            S.strict[j] = max(S.strict[j], fine.strict[m])
         i += stride
         j += 1

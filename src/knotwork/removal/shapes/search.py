@@ -74,6 +74,8 @@ class Lot(NamedTuple):
     #: the square of the largest distance that is allowed to each, and how many pieces
     target: Array
     most: Array
+    #: by how much distances from each piece count: 1, or more where less is allowed
+    strict: Array
 
 
 class Task(NamedTuple):
@@ -84,6 +86,7 @@ class Task(NamedTuple):
     directions: Array
     target: float
     most: int
+    strict: Array
 
 
 class Kind(NamedTuple):
@@ -140,7 +143,7 @@ def certified(task, kind, space, end, last, count, effort):
     S, G, room = space.samples, space.G, space.room
     for _ in range(effort.rounds):
         written(task.F, G, count, S, last, kind.unit, space.out, room)
-        pair = Pair(task.F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+        pair = Pair(task.F, space.out[:count], kind.metric, kind.product, kind.D, kind.W, task.strict)
         u, s = S.u[: last + 1], S.s[: last + 1]
         nodes = refined(pair, space.matching, task.target, u, s, space.u, space.s, space.failing)
         if nodes == 0:
@@ -174,7 +177,7 @@ def near(task, kind, space, effort):
     ATTEMPTS times.
     """
     F, S, fine, room = task.F, space.samples, space.fine, space.room
-    end = finely(F, kind.per, task.hard, fine, room)
+    end = finely(F, task.strict, kind.per, task.hard, fine, room)
     for attempt in range(ATTEMPTS):
         if attempt == ATTEMPTS - 1:  # the last time with all samples
             for j in range(1, end):
@@ -192,7 +195,7 @@ def near(task, kind, space, effort):
             if state < 0:
                 return count, -1
             u, s = S.u[: last + 1], S.s[: last + 1]
-            pair = Pair(F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+            pair = Pair(F, space.out[:count], kind.metric, kind.product, kind.D, kind.W, task.strict)
             nodes = refined(pair, space.matching, task.target, u, s, space.u, space.s, space.failing)
             return count, nodes if nodes > 0 else -1
         if nodes != 0:
@@ -209,14 +212,15 @@ def near_all(lot, first, end, kind, space, effort, found):
     for i in range(first, end):
         F = lot.F[lot.at[i] : lot.at[i + 1]]
         at, end_at = lot.hard_at[i], lot.hard_at[i] + len(F) + 1
-        task = Task(F, lot.hard[at:end_at], lot.directions[at:end_at], lot.target[i], lot.most[i])
+        strict = lot.strict[lot.at[i] : lot.at[i + 1]]
+        task = Task(F, lot.hard[at:end_at], lot.directions[at:end_at], lot.target[i], lot.most[i], strict)
         count, more = 0, 0
         if lot.most[i] > 0:
             count, more = near(task, kind, space, effort)
         if more < 0 or pieces + count > len(found.G) or nodes + more > len(found.u):
             return i
         if more > 0:
-            pair = Pair(F, space.out[:count], kind.metric, kind.product, kind.D, kind.W)
+            pair = Pair(F, space.out[:count], kind.metric, kind.product, kind.D, kind.W, task.strict)
             found.square[i] = path_square(pair, space.matching, space.u[:more], space.s[:more], space.room.d)
             for k in range(count):
                 for r in range(space.out.shape[1]):
@@ -295,10 +299,10 @@ class Search:
 
     def _forward(self, lot: Lot, i: int, found: Found) -> Found | None:
         """Return what was found for the curve backward, forward; its proof is made again."""
-        F = lot.F[lot.at[i] : lot.at[i + 1]]
+        F, strict = (x[lot.at[i] : lot.at[i + 1]] for x in (lot.F, lot.strict))
         G, kind = np.ascontiguousarray(found.G[::-1, ::-1]), self.kind
         u, s = len(G) - found.u[::-1], len(F) - found.s[::-1]
-        pair = Pair(F, G, kind.metric, kind.product, kind.D, kind.W)
+        pair = Pair(F, G, kind.metric, kind.product, kind.D, kind.W, strict)
         square = float(path_square(pair, self.space.matching, u, s, np.zeros(len(kind.unit))))
         return Found(G, u, s, square) if 0 <= square <= lot.target[i] else None
 
@@ -309,4 +313,5 @@ def _turned(lot: Lot) -> Lot:
     return Lot(
         np.ascontiguousarray(lot.F[::-1, ::-1]), len(lot.F) - lot.at[::-1], lot.hard[::-1].copy(),
         len(lot.hard) - ends[::-1], -lot.directions[::-1], lot.target[::-1].copy(), lot.most[::-1].copy(),
+        lot.strict[::-1].copy(),
     )  # fmt: skip

@@ -78,14 +78,14 @@ class Smooth(NamedTuple):
 
 def reduce_smooth(
     nets: Array, tolerance: Any, *, closed: bool, periodic: bool, angle: float | None, lines: bool, keep: Any,
-    effort: str, crossings: str, rational: bool, progress: Progress | None = None,
+    effort: str, crossings: str, rational: bool, progress: Progress | None = None, strict: Array | None = None,
 ) -> list[Smooth]:  # fmt: skip
     """Return smooth splines within a distance of one curve, found in several ways; it is still to be proven of each.
 
     The arguments are those of `reduce_bezier`. `periodic`: whether a closed curve is to be smooth where it closes. If
     that cannot be proven, the place where it was opened stays a knot of full count.
     """
-    given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational)
+    given = prepared(nets, [0, len(nets)], tolerance, closed, angle, lines, keep, rational, strict)
     if not given.possible:
         return []
     stays = not periodic or _seam_stays(given, angle)
@@ -105,7 +105,7 @@ def _smooth(
 ) -> Smooth | None:
     """Return a smooth spline from pieces, in one way, or none; `stays`: whether the seam is a corner, or kept."""
     F = given.nets
-    count = counted(F, given.at, 1 / given.unit, extent(len(given.unit)))
+    count = counted(F, given.strict, given.at, 1 / given.unit, extent(len(given.unit)))
     size = count + count // 2 + 64
     room = min(ALLOWED * (len(F) + 4), 4 * len(found.G) + size)
     search = SmoothSearch(F, given.hard, given, effort, manner, size, room, progress)
@@ -137,7 +137,7 @@ class SmoothSearch(Search):
     ) -> None:  # fmt: skip
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
         self.F, self.hard, self.progress, self.manner = F, hard, progress, manner
-        self.directions = given.directions
+        self.directions, self.strict = given.directions, given.strict
         self.effort = effort._replace(reach=manner.reach, chunk=CHUNK)
         self.G, self.samples, self.room = self.space.G, self.space.samples, self.space.room
         self.target, self.most = float(given.target()[0]), pieces - 8
@@ -167,7 +167,7 @@ class SmoothSearch(Search):
 
     def _proven(self) -> Path | None:
         """Prove what is found, with more knots where that fails."""
-        task = Task(self.F, self.hard, self.directions, self.target, self.most)
+        task = Task(self.F, self.hard, self.directions, self.target, self.most, self.strict)
         while True:
             state = certified_smooth(task, self.kind, self.space, self.end, self.last, self.count, self.effort)
             self.count, nodes, self.last, self.end = map(int, state)
@@ -187,7 +187,7 @@ class SmoothSearch(Search):
 
     def _sampled(self, s: Array, u: Array) -> None:
         """Take samples, with parameters from a path."""
-        self.end = int(finely(self.F, self.kind.per, self.hard, self.space.fine, self.room))
+        self.end = int(finely(self.F, self.strict, self.kind.per, self.hard, self.space.fine, self.room))
         self.last = int(merged(self.space.fine, self.end, self.F.shape[1] == 2, self.samples, self.room))
         interpolated(self.samples, self.last, s, u)
 
@@ -263,6 +263,7 @@ class SmoothSearch(Search):
             flags[count] = flags[0]
         frame.fixed[count - c], frame.tried[: count + 1] = 0, 0
         self.F, self.hard = np.roll(F, -i, axis=0), np.append(np.roll(self.hard[:-1], -i), self.hard[i])
+        self.strict = np.roll(self.strict, -i)
         self._sampled(s, u)
         if not frame.fixed[0]:
             S.hard[0] = S.hard[self.last] = 0

@@ -43,15 +43,21 @@ class Samples(NamedTuple):
     Z: Array
     s: Array
     mark: Array
+    #: by how much distances from each count: 1, or more where less is allowed
+    strict: Array
 
 
 class Lot(NamedTuple):
-    """Polylines one behind the other, number i at points at[i] … at[i + 1] - 1; which points stay, which are closed."""
+    """Polylines one behind the other, number i at points at[i] … at[i + 1] - 1; which points stay, which are closed.
+
+    And by how much distances from the edge behind each point count; 0 behind the last one.
+    """
 
     Y: Array
     at: Array
     kept: Array
     closed: Array
+    strict: Array
 
 
 class Found(NamedTuple):
@@ -71,6 +77,9 @@ class Space(NamedTuple):
     Y: Array
     Z: Array
     stay: Array
+    #: by how much distances from the edge behind each point, and from itself, count
+    strict: Array
+    at_point: Array
     ends: Array
     samples: Samples
     #: the same from another place on
@@ -79,6 +88,9 @@ class Space(NamedTuple):
     lo: Array
     hi: Array
     stops: Array
+    #: see `Course`
+    limit: Array
+    reach: Array
     queue: Queue
     found: Array
     #: what is found: vertices, as they are and in units, which samples they stand for, and the path
@@ -99,12 +111,15 @@ def match_route(course, ends, V, u):
 
 
 @kernel
-def entered(Y, kept, shift, search, space):
+def entered(Y, kept, strict, closed, shift, search, space):
     """Take over a polyline, from point `shift` on if it is closed; tell whether it can be searched."""
     n = len(Y)
+    before = strict[shift - 1 if shift > 0 else n - 2] if closed else strict[0]
     for j in range(n):
         k = j + shift if j + shift < n else j + shift - (n - 1)
-        space.stay[j] = kept[k]
+        behind = strict[0] if closed and k == n - 1 else strict[k]
+        space.stay[j], space.strict[j], space.at_point[j] = kept[k], behind, max(before, behind)
+        space.limit[j], before = search.eps * search.eps / (space.at_point[j] * space.at_point[j]), behind
         for d in range(len(search.D)):
             space.Y[j, d] = Y[k, d]
             space.Z[j, d] = Y[k, d] / search.units[d]
@@ -144,14 +159,14 @@ def sampled(space, n, chords_, search):
                     if i > 0:
                         S.Y[count, d] += w * (Y[k + 1, d] - Y[k, d])
                         S.Z[count, d] += w * (Z[k + 1, d] - Z[k, d])
-                S.s[count] = k + w
+                S.s[count], S.strict[count] = k + w, space.at_point[k] if i == 0 else space.strict[k]
                 S.mark[count] = FIXED if i == 0 and space.stay[k] else (STATION if part != before else 0)
                 before = part
                 count += 1
             along += length
     for d in range(len(search.D)):
         S.Y[count, d], S.Z[count, d] = Y[n - 1, d], Z[n - 1, d]
-    S.s[count] = n - 1
+    S.s[count], S.strict[count] = n - 1, space.at_point[n - 1]
     S.mark[count] = FIXED if space.stay[n - 1] else STATION
     return count
 
@@ -163,7 +178,7 @@ def turned(S, last, k, T, D):
         i = k + j if k + j < last else k + j - last
         for d in range(len(D)):
             T.Y[j, d], T.Z[j, d] = S.Y[i, d], S.Z[i, d]
-        T.s[j], T.mark[j] = S.s[i] + (S.s[last] if k + j >= last else 0), S.mark[i]
+        T.s[j], T.mark[j], T.strict[j] = S.s[i] + (S.s[last] if k + j >= last else 0), S.mark[i], S.strict[i]
 
 
 @kernel(inline=False)
@@ -171,6 +186,7 @@ def routed(S, last, only, search, space):
     """Find a route along samples, to candidate `only` if not -1; return how many stations, and vertices."""
     n, stops, m = 0, 0, len(search.offsets)
     for j in range(last + 1):
+        space.limit[j], space.reach[j] = search.limit / (S.strict[j] * S.strict[j]), 1 / S.strict[j]
         if S.mark[j] == 0:
             continue
         space.at[n], space.lo[n], space.hi[n] = j, 0, 1 if S.mark[j] == FIXED else m
@@ -188,11 +204,12 @@ def routed(S, last, only, search, space):
 def course_of(S, last, n, search, space):
     """Return the course over samples 0 … last and n stations."""
     at, lo, hi = space.at[:n], space.lo[:n], space.hi[:n]
-    return Course(S.Z[: last + 1], at, search.offsets, lo, hi, search.limit, search.skipped, search.D)
+    limit, reach = space.limit[: last + 1], space.reach[: last + 1]
+    return Course(S.Z[: last + 1], at, search.offsets, lo, hi, limit, reach, search.skipped, search.D)
 
 
 @kernel(inline=False)
-def few(Y, kept, closed, search, space):
+def few(Y, kept, strict, closed, search, space):
     """Find few vertices; return how many, and how many nodes the path has: zeros if nothing is gained.
 
     A closed polyline begins at the first point that stays, or in the middle of the best open course.
@@ -204,9 +221,9 @@ def few(Y, kept, closed, search, space):
     ring = closed and shift == n - 1
     if ring:
         shift = 0
-    if not entered(Y, kept, shift, search, space):
+    if not entered(Y, kept, strict, closed, shift, search, space):
         return 0, 0
-    last = sampled(space, n, chords(space.Z[:n], search.eps * search.eps, space.ends, D) - 1, search)
+    last = sampled(space, n, chords(space.Z[:n], space.limit, space.ends, D) - 1, search)
     stations, count = routed(S, last, -1, search, space)
     only = -1
     if ring:
@@ -223,7 +240,7 @@ def few(Y, kept, closed, search, space):
         j = -1 - number if number < 0 else space.at[number // m]
         space.of[i] = j
         for d in range(len(D)):
-            off = search.offsets[number % m, d] if number >= 0 else 0.0
+            off = space.reach[j] * search.offsets[number % m, d] if number >= 0 else 0.0
             space.V[i, d] = S.Y[j, d] + off * search.units[d]
             space.W[i, d] = S.Z[j, d] + off
     course = course_of(S, last, stations, search, space)
@@ -247,7 +264,7 @@ def few_of_all(lot, search, space, found):
     v, j = 0, 0
     for i in range(len(lot.at) - 1):
         a, b = lot.at[i], lot.at[i + 1]
-        vertices, nodes = few(lot.Y[a:b], lot.kept[a:b], lot.closed[i], search, space)
+        vertices, nodes = few(lot.Y[a:b], lot.kept[a:b], lot.strict[a:b], lot.closed[i], search, space)
         for k in range(vertices):
             for d in range(len(search.D)):
                 found.V[v + k, d] = space.V[k, d]
@@ -263,13 +280,15 @@ def searched(lot: Lot, search: Search) -> Found:
     most, total = (PART + 1) * count + 2, (PART + 1) * len(lot.Y) + 2 * len(lot.at)
     size = (min(CHUNK, most) + 2) * m
     one, other = (
-        Samples(np.empty((most, d)), np.empty((most, d)), np.empty(most), np.empty(most, np.int8)) for _ in range(2)
+        Samples(np.empty((most, d)), np.empty((most, d)), np.empty(most), np.empty(most, np.int8), np.empty(most))
+        for _ in range(2)
     )
     at, lo, hi, stops = np.empty((4, most), np.int64)
+    (on_edges, at_points), (limit, reach) = np.empty((2, count)), np.empty((2, most))
     Y, Z, (V, W), (u, path) = *np.empty((2, count, d)), np.empty((2, 3 * most, d)), np.empty((2, most + 1))
     space = Space(
-        Y, Z, np.empty(count, bool), np.empty(count, np.int64), one, other, at, lo, hi, stops,
-        Queue(*np.empty((3, size), np.int64), *np.empty((2, d))), np.empty(3 * most, np.int64),
+        Y, Z, np.empty(count, bool), on_edges, at_points, np.empty(count, np.int64), one, other, at, lo, hi, stops,
+        limit, reach, Queue(*np.empty((3, size), np.int64), *np.empty((2, d))), np.empty(3 * most, np.int64),
         V, W, np.empty(3 * most, np.int64), u, path,
     )  # fmt: skip
     found = Found(np.empty((len(lot.Y), d)), *np.empty((2, total)), *np.zeros((2, len(lot.at)), np.int64))
