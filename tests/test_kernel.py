@@ -277,6 +277,7 @@ def test_plain_and_compiled_agree_on_shapes(both):
     line[-1] = line[0]
     for closed in (True, False):
         reduce_polyline(line, 1.0, closed=closed)
+        reduce_polyline(line, 1.0, closed=closed, strict=1 + rng.random(29))
     fewest_pieces(line, 1.0, 1)
     a = kw.curve(line[:7], 3)
     for b in (kw.insert(a, [0.3]), kw.curve(line[:7] + 0.01, 1), kw.curve(line[:7], 3, weights=1 + rng.random(7))):

@@ -26,7 +26,7 @@ NOT = -2
 class Course(NamedTuple):
     """Points in order, and where vertices may be.
 
-    Candidate r of station i is point at[i] moved by reach[at[i]] times offsets[r], lo[i] <= r < hi[i]; its number is
+    Candidate r of station i is point at[i] moved by what offsets[r] `reaches` there, lo[i] <= r < hi[i]; its number is
     i · m + r, m the number of offsets. offsets[0] is zero.
     """
 
@@ -35,7 +35,7 @@ class Course(NamedTuple):
     offsets: Array
     lo: Array
     hi: Array
-    #: square of the distance from each point that may not be exceeded; that distance by the largest
+    #: square of the distance from points that may not be exceeded, and that distance by the largest: see `allowed`
     limit: Array
     reach: Array
     #: the part of the stations of one link more, from the first on, whose candidates are not expanded
@@ -54,6 +54,34 @@ class Queue(NamedTuple):
     #: start and end of a link
     P: Array
     Q: Array
+
+
+@kernel
+def allowed(limit, k):
+    """Return the square of the distance from point k that may not be exceeded: the same from all."""
+    return limit[0]
+
+
+@kernel
+def reaches(course, k):
+    """Return by how much less far from point k than from others a vertex may be: no less."""
+    return 1
+
+
+@kernel
+def allowed_there(limit, k):
+    """Return the same where the tolerance varies."""
+    return limit[k]
+
+
+@kernel
+def reaches_there(course, k):
+    """Return the same where the tolerance varies."""
+    return course.reach[k]
+
+
+#: what takes the place of kernels where the tolerance varies
+VARYING = {"allowed": allowed_there, "reaches": reaches_there}
 
 
 @kernel
@@ -85,7 +113,7 @@ def passes(P, Q, Y, lo, hi, limit, D):
         a = min(max(along, 0.0), chord)
         if a < ahead or not chord > 0:
             break
-        if (square - limit[k]) * chord > a * (2 * along - a):
+        if (square - allowed(limit, k)) * chord > a * (2 * along - a):
             return k
         ahead = a
         k += 1
@@ -94,13 +122,13 @@ def passes(P, Q, Y, lo, hi, limit, D):
     run = 0.0
     for k in range(lo, hi):
         along, chord, square = foot(P, Q, Y[k], D)
-        rest = along * along - chord * (square - limit[k])
+        rest = along * along - chord * (square - allowed(limit, k))
         if chord > 0 and rest >= 0:
             root = math.sqrt(rest)
             run = max(run, along - root)
             if run > along + root or run > chord:
                 return k
-        elif chord > 0 or square > limit[k]:
+        elif chord > 0 or square > allowed(limit, k):
             return k
     return -1
 
@@ -117,7 +145,7 @@ def matched(P, Q, course, lo, hi, start, u):
     for k in range(hi - 1, lo - 1, -1):
         along, chord, square = foot(P, Q, course.Y[k], course.D)
         if chord > 0:
-            root = math.sqrt(max(along * along - chord * (square - course.limit[k]), 0.0))
+            root = math.sqrt(max(along * along - chord * (square - allowed(course.limit, k)), 0.0))
             reach = max(min(reach, (along + root) / chord), 0.0)
         u[k] = start + min(u[k], reach)
 
@@ -155,7 +183,7 @@ def chords(Y, limit, ends, D):
 def candidate(course, i, r, P):
     """Write candidate r of station i to P."""
     for d in range(len(course.D)):
-        P[d] = course.Y[course.at[i], d] + course.reach[course.at[i]] * course.offsets[r, d]
+        P[d] = course.Y[course.at[i], d] + reaches(course, course.at[i]) * course.offsets[r, d]
 
 
 @kernel
@@ -196,7 +224,7 @@ def fewest(course, queue, first, last, only):
                     if parent[number - base] != NOT:
                         continue
                     candidate(course, j, r, queue.Q)
-                    if failing >= 0 and not near(queue.P, queue.Q, course.Y[failing], limit[failing], D):
+                    if failing >= 0 and not near(queue.P, queue.Q, course.Y[failing], allowed(limit, failing), D):
                         continue
                     found = passes(queue.P, queue.Q, course.Y, at[i] + 1, at[j], limit, D)
                     if found >= 0:

@@ -154,7 +154,7 @@ def picked(points: Array, tolerance: Any) -> Polyline:
     D, s = extent(Y.shape[1]), np.arange(len(Y)).astype(float)
     u, room = np.empty(len(Y)), np.empty(len(Y), np.int64)
     for margin in MARGINS:
-        limit = np.full(len(Z), (eps * (1 - margin)) ** 2)
+        limit = np.array([(eps * (1 - margin)) ** 2])
         ends = room[: chords(Z, limit, room, D)]
         match_route(Course(Z, ends, Z, ends, ends, limit, limit, 0.0, D), ends, Z[ends], u)
         bound = Scaled(_nets(Y), _nets(Y[ends]), tolerance).bound(u, s)

@@ -8,7 +8,7 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array
 from knotwork.arithmetic.kernel import kernel
-from knotwork.removal.shapes.links import PART, Course, Queue, chords, matched, route
+from knotwork.removal.shapes.links import PART, VARYING, Course, Queue, chords, matched, reaches, route
 
 #: stations searched at once: what bounds the memory
 CHUNK = 1 << 15
@@ -111,6 +111,19 @@ def match_route(course, ends, V, u):
 
 
 @kernel
+def limits(space, strict, n, square):
+    """Write the square of the distance from n points that may not be exceeded: the same from all."""
+    space.limit[0] = square
+
+
+@kernel
+def limits_there(space, strict, n, square):
+    """Write the same where the tolerance varies."""
+    for j in range(n):
+        space.limit[j], space.reach[j] = square / (strict[j] * strict[j]), 1 / strict[j]
+
+
+@kernel
 def entered(Y, kept, strict, closed, shift, search, space):
     """Take over a polyline, from point `shift` on if it is closed; tell whether it can be searched."""
     n = len(Y)
@@ -119,7 +132,7 @@ def entered(Y, kept, strict, closed, shift, search, space):
         k = j + shift if j + shift < n else j + shift - (n - 1)
         behind = strict[0] if closed and k == n - 1 else strict[k]
         space.stay[j], space.strict[j], space.at_point[j] = kept[k], behind, max(before, behind)
-        space.limit[j], before = search.eps * search.eps / (space.at_point[j] * space.at_point[j]), behind
+        before = behind
         for d in range(len(search.D)):
             space.Y[j, d] = Y[k, d]
             space.Z[j, d] = Y[k, d] / search.units[d]
@@ -185,8 +198,8 @@ def turned(S, last, k, T, D):
 def routed(S, last, only, search, space):
     """Find a route along samples, to candidate `only` if not -1; return how many stations, and vertices."""
     n, stops, m = 0, 0, len(search.offsets)
+    limits(space, S.strict, last + 1, search.limit)
     for j in range(last + 1):
-        space.limit[j], space.reach[j] = search.limit / (S.strict[j] * S.strict[j]), 1 / S.strict[j]
         if S.mark[j] == 0:
             continue
         space.at[n], space.lo[n], space.hi[n] = j, 0, 1 if S.mark[j] == FIXED else m
@@ -223,6 +236,7 @@ def few(Y, kept, strict, closed, search, space):
         shift = 0
     if not entered(Y, kept, strict, closed, shift, search, space):
         return 0, 0
+    limits(space, space.at_point, n, search.eps * search.eps)
     last = sampled(space, n, chords(space.Z[:n], space.limit, space.ends, D) - 1, search)
     stations, count = routed(S, last, -1, search, space)
     only = -1
@@ -235,15 +249,15 @@ def few(Y, kept, strict, closed, search, space):
         turned(S, last, k, space.turned, D)
         S = space.turned
         stations, count = routed(S, last, only, search, space)
+    course = course_of(S, last, stations, search, space)
     for i in range(count):
         number = space.found[i]
         j = -1 - number if number < 0 else space.at[number // m]
         space.of[i] = j
         for d in range(len(D)):
-            off = space.reach[j] * search.offsets[number % m, d] if number >= 0 else 0.0
+            off = reaches(course, j) * search.offsets[number % m, d] if number >= 0 else 0.0
             space.V[i, d] = S.Y[j, d] + off * search.units[d]
             space.W[i, d] = S.Z[j, d] + off
-    course = course_of(S, last, stations, search, space)
     match_route(course, space.of[:count], space.W[:count], space.u)
     nodes = last + 1
     for j in range(nodes):
@@ -274,6 +288,9 @@ def few_of_all(lot, search, space, found):
         found.vertices[i + 1], found.nodes[i + 1] = v, j
 
 
+few_of_varying = few_of_all.variant(limits=limits_there, **VARYING)
+
+
 def searched(lot: Lot, search: Search) -> Found:
     """Find few vertices of polylines of two points or more."""
     count, d, m = int(np.diff(lot.at).max(initial=2)), lot.Y.shape[1], len(search.offsets)
@@ -292,5 +309,6 @@ def searched(lot: Lot, search: Search) -> Found:
         V, W, np.empty(3 * most, np.int64), u, path,
     )  # fmt: skip
     found = Found(np.empty((len(lot.Y), d)), *np.empty((2, total)), *np.zeros((2, len(lot.at)), np.int64))
-    few_of_all(lot, search, space, found)
+    few = few_of_all if (lot.strict <= 1).all() else few_of_varying
+    few(lot, search, space, found)
     return found
