@@ -119,7 +119,7 @@ def reduce(
         Whether points at equal parameters are compared, or shapes.
     form : "spline", "bezier" or "polyline"
         What is asked for; at equal parameters a spline. Between shapes, a cubic spline with simple knots but at corners
-        that stay, Bézier pieces that join, or straight edges.
+        that stay, Bézier pieces that join, or straight edges (of a curve too; of its pieces that stay, the end points).
     degree : int, optional
         Of the result. At equal parameters the spline's own, or a higher one, to which it is raised first; between
         shapes that of Bézier pieces: 3, or 2 as in TrueType.
