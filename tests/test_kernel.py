@@ -290,7 +290,8 @@ def test_plain_and_compiled_agree_on_shapes(both):
     wild = np.cumsum(np.random.default_rng(2).standard_normal((12, 2)) * 6, axis=0)
     reduce_bezier(np.stack([wild[:-1], wild[1:]], axis=1), [0, 11], 2.0)  # one that needs repair
     around = {"closed": True, "periodic": True, "angle": None, "lines": False, "keep": (), "rational": False}
-    reduce_smooth(edges, 0.5, effort="fast", crossings="none-new", **around)
+    for tolerance in (0.5, 4.0):  # a loop of few points, and one of fewer
+        reduce_smooth(edges, tolerance, effort="fast", crossings="none-new", **around)
     bent = np.array([[0, 0], [0, 55], [45, 100], [100, 100], [155, 100], [200, 55], [200, 0], [190, -160], [10, -170]])
     ring = [bent[[0, 1, 2, 3]], bent[[3, 4, 5, 6]], bent[[6, 7, 8, 0]]]
     for into in (True, False):

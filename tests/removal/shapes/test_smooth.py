@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from test_bezier import coast, edges
 
 import knotwork as kw
-from knotwork.removal.shapes import smooth
+from knotwork.removal.shapes import thinning
 from knotwork.removal.shapes.frame import condensed, framed, netted
 from knotwork.removal.shapes.knots import samples_around
 from knotwork.removal.shapes.room import room, samples
@@ -190,7 +190,7 @@ def test_long_curves_are_worked_on_in_parts(closed, monkeypatch):
     """However many pieces are in their place at once, the result is the same, bit for bit."""
     curve = polyline(coast() if closed else coast()[:900], closed)
     before = kw.reduce(curve, 1.0, distance="geometric")
-    monkeypatch.setattr(smooth, "CHUNK", 16)
+    monkeypatch.setattr(thinning, "CHUNK", 16)
     after = kw.reduce(curve, 1.0, distance="geometric")
     assert len(before.spline.points) > 100
     assert (after.spline.points == before.spline.points).all()

@@ -84,14 +84,26 @@ def netted(G, k0, k1, room):
                 G[k, i, c] = total
 
 
+@kernel
+def points(frame, k0, k1):
+    """Return how many control points pieces k0 … k1 have."""
+    return frame.at[k1] + 4 - frame.at[k0]
+
+
+@kernel
+def among(i, n):
+    """Return which of the n control points of a window is the i-th from its first one on."""
+    return i
+
+
 @kernel(inline=False)
 def condensed(k0, k1, room, raw, state):
     """Turn the equations of free pieces into those of the control points behind them."""
     A, b, E, at, D = room.A, room.b, room.frame.E, room.frame.at, room.D
-    size = (at[k1] + 4 - at[k0]) * len(D)
-    for i in range(size):
+    n = points(room.frame, k0, k1)
+    for i in range(n * len(D)):
         b[state, i] = 0
-        for o in range(4 * len(D)):
+        for o in range(A.shape[2]):
             A[state, i, o] = 0
     for k in range(k0, k1 + 1):
         first = at[k] - at[k0]
@@ -104,7 +116,7 @@ def condensed(k0, k1, room, raw, state):
                 if by == 0:
                     continue
                 for c in range(len(D)):
-                    b[state, (first + i) * len(D) + c] += by * b[raw, here + c]
+                    b[state, among(first + i, n) * len(D) + c] += by * b[raw, here + c]
             for s in range(r + 1):
                 for i in range(4):
                     for l in range(4):
@@ -118,7 +130,7 @@ def condensed(k0, k1, room, raw, state):
                                 if column > row:
                                     continue
                                 value = both * A[raw, here + c, row - column]
-                                i1, l1 = (first + i) * len(D) + c, (first + l) * len(D) + e
+                                i1, l1 = among(first + i, n) * len(D) + c, among(first + l, n) * len(D) + e
                                 if i1 >= l1:
                                     A[state, i1, i1 - l1] += value
                                 if row > column and l1 >= i1:
@@ -156,7 +168,7 @@ def kept_frame(G, S, k0, k1, ja, jb, room, slot):
     """Keep pieces k0 … k1, their control points and the parameters of samples ja … jb."""
     kept(G, S, k0, k1, ja, jb, room, slot)
     at, C, old = room.frame.at, room.frame.C, room.frame.old
-    for i in range(at[k1] + 4 - at[k0]):
+    for i in range(points(room.frame, k0, k1)):
         for c in range(len(room.D)):
             old[slot, i, c] = C[at[k0] + i, c]
 
@@ -166,7 +178,7 @@ def restored_frame(G, S, k0, k1, ja, jb, room, slot):
     """Bring back what was kept."""
     restored(G, S, k0, k1, ja, jb, room, slot)
     at, C, old = room.frame.at, room.frame.C, room.frame.old
-    for i in range(at[k1] + 4 - at[k0]):
+    for i in range(points(room.frame, k0, k1)):
         for c in range(len(room.D)):
             C[at[k0] + i, c] = old[slot, i, c]
 

@@ -23,7 +23,8 @@ from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
 from knotwork.removal.shapes.polyline import Polyline, reduce_polylines
 from knotwork.removal.shapes.portions import Portions, along, portioned
-from knotwork.removal.shapes.smooth import Smooth, reduce_smooth
+from knotwork.removal.shapes.smooth import reduce_smooth
+from knotwork.removal.shapes.thinning import Smooth
 from knotwork.removal.shapes.vertices import vertices
 from knotwork.removal.tolerance import Tolerance
 from knotwork.removal.varying import varies

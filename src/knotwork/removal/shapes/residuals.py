@@ -261,35 +261,41 @@ def slopes(G, k, t, y, room):
 
 
 @kernel(inline=False)
-def rematched(G, k0, k1, S, ja, jb, room):
-    """Move the parameters of samples ja+1 … jb-1 to their feet, by two Newton steps each, and pool those out of order.
+def footed(G, k0, k1, at, y, room):
+    """Return where the foot of a sample is, by two Newton steps from `at`, in pieces k0 … k1.
 
     A joint is crossed only if the piece behind it pulls too.
     """
+    k = min(max(int(at), k0), k1)
+    t = at - k
+    for _ in range(2):
+        toward, speed, bend = slopes(G, k, t, y, room)
+        below = max(speed + bend, speed / 2)
+        if not below > 0:
+            break
+        t -= min(max(toward / below, -0.5), 0.5)
+        if t > 1:
+            t = 1.0
+            if k < k1:
+                toward, speed, bend = slopes(G, k + 1, 0.0, y, room)
+                if toward < 0:
+                    k, t = k + 1, 0.0
+        elif t < 0:
+            t = 0.0
+            if k > k0:
+                toward, speed, bend = slopes(G, k - 1, 1.0, y, room)
+                if toward > 0:
+                    k, t = k - 1, 1.0
+    return k + t
+
+
+@kernel(inline=False)
+def rematched(G, k0, k1, S, ja, jb, room):
+    """Move the parameters of samples ja+1 … jb-1 to their feet, and pool those out of order."""
     u = S.u
     disorder = False
     for j in range(ja + 1, jb):
-        k = min(max(int(u[j]), k0), k1)
-        t = u[j] - k
-        for _ in range(2):
-            toward, speed, bend = slopes(G, k, t, S.y[j], room)
-            below = max(speed + bend, speed / 2)
-            if not below > 0:
-                break
-            t -= min(max(toward / below, -0.5), 0.5)
-            if t > 1:
-                t = 1.0
-                if k < k1:
-                    toward, speed, bend = slopes(G, k + 1, 0.0, S.y[j], room)
-                    if toward < 0:
-                        k, t = k + 1, 0.0
-            elif t < 0:
-                t = 0.0
-                if k > k0:
-                    toward, speed, bend = slopes(G, k - 1, 1.0, S.y[j], room)
-                    if toward > 0:
-                        k, t = k - 1, 1.0
-        u[j] = k + t
+        u[j] = footed(G, k0, k1, u[j], S.y[j], room)
         disorder = disorder or u[j] < u[j - 1]
     if disorder or u[jb] < u[jb - 1]:
         pooled(u, ja, jb, max(u[ja], k0), min(u[jb], k1 + 1), room)
