@@ -292,6 +292,8 @@ def test_plain_and_compiled_agree_on_shapes(both):
     around = {"closed": True, "periodic": True, "angle": None, "lines": False, "keep": (), "rational": False}
     for tolerance in (0.5, 4.0):  # a loop of few points, and one of fewer
         reduce_smooth(edges, tolerance, effort="fast", crossings="none-new", **around)
+    opened = {**around, "closed": False, "periodic": False}
+    reduce_smooth(edges[:6], 0.5, effort="best", crossings="none-new", **opened)  # which relaxes
     bent = np.array([[0, 0], [0, 55], [45, 100], [100, 100], [155, 100], [200, 55], [200, 0], [190, -160], [10, -170]])
     ring = [bent[[0, 1, 2, 3]], bent[[3, 4, 5, 6]], bent[[6, 7, 8, 0]]]
     for into in (True, False):

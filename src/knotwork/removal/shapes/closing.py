@@ -76,6 +76,8 @@ class ClosedSearch(SmoothSearch):
                 self._thinned()
             if self._points == before:
                 break
+            if self.manner.wider:
+                self._relaxed()
         if not cornered and self.count <= SMALL:
             self._thinned_around()
         self._turn(self.first)

@@ -17,10 +17,12 @@ from knotwork.removal.shapes.frame import (
     restored_frame,
 )
 from knotwork.removal.shapes.residuals import FAIR, measured
-from knotwork.removal.shapes.window import HOPELESS, TARGET, copied
+from knotwork.removal.shapes.window import CHECK, HOPELESS, NEAR, TARGET, copied
 
 #: sweeps of least squares before the p-norm
 SWEEPS = 2
+#: pieces on each side by which a window grows
+MORE = 3
 #: pieces behind a window whose knots are felt in it
 FELT = 2 * DEGREE + 3
 
@@ -191,23 +193,42 @@ def fitted(G, k0, k1, S, ja, jb, room, steps):
 
 
 @kernel(inline=False)
-def thinned(G, S, last, count, room, effort):
+def relaxed(G, S, last, count, room, effort):
+    """Lower the 8-norm all along the curve, a window at a time: what is gained in one is room to move for others.
+
+    All knots may be tried again. Bounded: one fit for each effort.reach pieces.
+    """
+    frame, around, j = room.frame, 1 if room.frame.times[0] < DEGREE else 0, 0
+    for k in range(around, count - around, effort.reach):
+        k0, k1 = window_around(frame, k, k, effort.reach, count)
+        ja, jb = samples_around(S, last, j, k0, k1)
+        j = ja
+        kept_frame(G, S, k0, k1, ja, jb, room, 1)
+        if descended_frame(G, k0, k1, S, ja, jb, room, 1, 4, CHECK, FAIR, 0.0) > TARGET:
+            restored_frame(G, S, k0, k1, ja, jb, room, 1)
+    for k in range(count + 1):
+        frame.tried[k] = 0
+
+
+@kernel(inline=False)
+def thinned(G, S, last, count, room, effort, wider):
     """Take out knots from the first to the last one, as long as the curve stays near; return how many pieces are left.
 
-    Knots that were tried in vain are passed over until one nearby goes. Bounded: one fit a copy of a knot.
+    Knots that were tried in vain are passed over until one nearby goes; if that was by little, more pieces are fitted
+    again. Bounded: one fit a copy of a knot, and one for each MORE in `wider`.
     """
-    frame, rest = room.frame, room.frame.rest
+    frame, rest, more = room.frame, room.frame.rest, 0
     parted(G, S, last, count, 0, effort.chunk, room)
     h, times, around = frame.h, frame.times, DEGREE + 1 if frame.times[0] < DEGREE else 1
     k, j = around, 0
     while k <= count - around:
-        if rest[0] < count and k + effort.reach + FELT >= rest[0]:
+        if rest[0] < count and k + effort.reach + wider + FELT >= rest[0]:
             pulled(G, S, last, count, effort.chunk, room)
         e, front = rest[0], rest[3]
         if frame.fixed[k] or frame.tried[k]:
             k += 1
             continue
-        k0, k1 = window_around(frame, k - 1, k, effort.reach, e)
+        k0, k1 = window_around(frame, k - 1, k, effort.reach + more, e)
         ja, jb = samples_around(S, front, j, k0, k1)
         j = ja
         kept_frame(G, S, k0, k1, ja, jb, room, 1)
@@ -225,13 +246,18 @@ def thinned(G, S, last, count, room, effort):
             rest[0] -= merged
             for i in range(max(k - effort.reach, 1), min(k + effort.reach, count)):
                 frame.tried[i] = 0
+            more = 0
         else:
             for i in range(k - 1, e + 1):
                 h[i], times[i] = frame.lengths[i], frame.counts[i]
             framed(frame, k0, k1, e)
             restored_frame(G, S, k0, k1, ja, jb, room, 1)
-            frame.tried[k] = 1
-            k += 1
+            if worst < NEAR and more < wider:
+                more += MORE
+            else:
+                frame.tried[k] = 1
+                k += 1
+                more = 0
     while rest[0] < count:
         pulled(G, S, last, count, effort.chunk, room)
     return count

@@ -23,9 +23,9 @@ from knotwork.removal.shapes.thinning import Manner, Smooth, SmoothSearch
 
 #: the ways of each effort; the fewest knots count
 MANNERS = {
-    "fast": (Manner(3, 4, 1, 1, 4),),
-    "normal": (Manner(3, 5, 2, 1, 4),),
-    "best": (Manner(3, 5, 2, 3, 12), Manner(2, 5, 8, 0, 0), Manner(4, 4, 8, 0, 0)),
+    "fast": (Manner(3, 4, 0, 1, 1, 4),),
+    "normal": (Manner(3, 5, 0, 2, 1, 4),),
+    "best": (Manner(3, 5, 0, 2, 3, 12), Manner(2, 5, 6, 8, 0, 0), Manner(4, 4, 6, 8, 0, 0)),
 }
 #: the effort for the pieces to begin with: fewer of them leave no fewer knots (four coasts and a drawing)
 PIECES = {"fast": "fast", "normal": "normal", "best": "normal"}

@@ -18,7 +18,7 @@ from knotwork.geometry.lengths import SHORTEST
 from knotwork.removal.result import Progress, tell
 from knotwork.removal.shapes.bezier import Curves
 from knotwork.removal.shapes.frame import DEGREE, descended_frame, framed, netted
-from knotwork.removal.shapes.knots import mended, thinned
+from knotwork.removal.shapes.knots import mended, relaxed, thinned
 from knotwork.removal.shapes.repair import interpolated
 from knotwork.removal.shapes.residuals import FAIR
 from knotwork.removal.shapes.room import Room
@@ -42,6 +42,8 @@ class Manner(NamedTuple):
     parts: int
     #: pieces on each side of a knot that are fitted again
     reach: int
+    #: and how many more, at most, where a fit fails by little
+    wider: int
     #: how often all knots are tried
     passes: int
     #: how often a closed curve is begun anew, and from how many pieces on it is not
@@ -105,8 +107,10 @@ class SmoothSearch(Search):
             before = at[self.count - 1]
             self._thinned()
             tell(self.progress, (k + 1) / (self.manner.passes + 1))
-            if at[self.count - 1] == before:
+            if at[self.count - 1] == before and k > 0:
                 break
+            if self.manner.wider:
+                self._relaxed()
         return self._proven()
 
     def _proven(self) -> Path | None:
@@ -131,8 +135,13 @@ class SmoothSearch(Search):
         places = np.zeros(0)  # everywhere
         self.count = int(mended(self.G, self.samples, self.last, self.count, self.most, places, self.room, self.effort))
 
+    def _relaxed(self) -> None:
+        relaxed(self.G, self.samples, self.last, self.count, self.room, self.effort)
+
     def _thinned(self) -> None:
-        self.count = int(thinned(self.G, self.samples, self.last, self.count, self.room, self.effort))
+        self.count = int(
+            thinned(self.G, self.samples, self.last, self.count, self.room, self.effort, self.manner.wider)
+        )
 
     def _sampled(self, s: Array, u: Array) -> None:
         """Take samples, with parameters from a path."""
