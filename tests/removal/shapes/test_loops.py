@@ -97,7 +97,7 @@ def loop(h, points, count=40):
     frame.h[:n], frame.times[: n + 1] = h, 1
     frame.C[:n] = points
     netted_around(G, n, space)
-    S.u[:count] = 0.3 + n * np.arange(count) / (count - 1)
+    S.u[:count], S.strict[:count] = 0.3 + n * np.arange(count) / (count - 1), 1
     return spline, space, S, G, count - 1
 
 
