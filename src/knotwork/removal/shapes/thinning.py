@@ -180,15 +180,14 @@ class SmoothSearch(Search):
         nodes = sum(knots[1 + r : 1 + r + n] for r in range(DEGREE)) / DEGREE
         for c in range(d):
             frame.C[:n, c] = np.interp(nodes, v, on[:, c])
-        frame.C[self._corners()] = S.y[: self.last + 1][hard]
+        frame.C[self._points_at(np.flatnonzero(frame.fixed[: count + 1]))] = S.y[: self.last + 1][hard]
         netted(self.G, 0, count - 1, self.room)
 
-    def _corners(self) -> Array:
-        """Return the control points at the knots that stay, from the first to the last."""
+    def _points_at(self, knots: Array) -> Array:
+        """Return which control points are the points at knots of full count."""
         frame, count = self.room.frame, self.count
-        fixed = np.flatnonzero(frame.fixed[: count + 1])
         n = frame.at[count - 1] + DEGREE + 1
-        return np.where(fixed < count, frame.at[np.minimum(fixed, count - 1)], n - 1)
+        return np.where(knots < count, frame.at[np.minimum(knots, count - 1)], n - 1)
 
     def _joint(self, i: int) -> Array:
         """Return the point of f before piece i, or its end."""
@@ -202,8 +201,9 @@ class SmoothSearch(Search):
         frame, count = self.room.frame, self.count
         n = frame.at[count - 1] + DEGREE + 1
         points = self._joint(0) + frame.C[:n] * self.kind.unit
-        fixed = self.samples.hard[: self.last + 1] == 1
-        for at, s in zip(self._corners(), self.samples.s[: self.last + 1][fixed].astype(int), strict=True):
+        S, hard = self.samples, np.flatnonzero(self.samples.hard[: self.last + 1] == 1)
+        knots = np.round(S.u[hard]).astype(int)  # a curve that is closed has the first of them at its end too
+        for at, s in zip(self._points_at(knots), S.s[hard].astype(int), strict=True):
             points[at] = self._joint(s)
         times = frame.times[: count + 1].copy()
         if periodic:
