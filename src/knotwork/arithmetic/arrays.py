@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -135,6 +136,11 @@ def require_finite(array: Array, what: str, error: type[KnotworkError]) -> None:
     if not all_finite(array):
         place, x = next((i, x) for i, x in np.ndenumerate(array) if not all_finite(np.asarray(x)))
         raise error(f"{what}{list(place) if place else ''} is {x}; expected finite numbers")
+
+
+def in_a_row(parts: Sequence[Array]) -> tuple[Array, Array]:
+    """Return arrays one behind the other, and where each begins."""
+    return np.concatenate(parts), np.concatenate([[0], np.cumsum([len(p) for p in parts])])
 
 
 def empty(shape: tuple[int, ...], dtype: Any) -> Array:

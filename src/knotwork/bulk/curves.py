@@ -77,6 +77,9 @@ def reduce_curves(
     [4, 4]
     """
 
+    def asked(spline: Spline) -> str:
+        return form or ("spline" if distance == "parametric" else "polyline" if _straight(spline) else "bezier")
+
     def one(spline: Spline) -> Outcome:
         if no_crossings:
             if not _straight(spline) or (distance, form or "polyline", keep) != ("geometric", "polyline", None):
@@ -85,7 +88,7 @@ def reduce_curves(
             if np.ndim(allowed):
                 raise ParameterError(f"no_crossings and the tolerance {tolerance} given; expected one number")
             return Outcome(*uncrossed([spline], allowed, polylines(effort))[0])
-        made = form or ("spline" if distance == "parametric" else "polyline" if _straight(spline) else "bezier")
+        made = asked(spline)
         pieces = joints if form or made == "bezier" else JOINTS[0]
         found = reduce(spline, tolerance, distance=distance, form=made, effort=effort, keep=keep, joints=pieces)
         return Outcome(found.spline, float(np.max(found.bound)))
@@ -93,7 +96,7 @@ def reduce_curves(
     found: dict[int, Outcome] = {}
     together = not no_crossings and distance == "geometric" and not isinstance(tolerance, Relative)
     for made in ("bezier", "polyline") if together else ():
-        some = [i for i, s in enumerate(splines) if (form or ("polyline" if _straight(s) else "bezier")) == made]
+        some = [i for i, s in enumerate(splines) if asked(s) == made]
         if not some or (form == "polyline" and joints != JOINTS[0]):
             continue
         given = [splines[i] for i in some]

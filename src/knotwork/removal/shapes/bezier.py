@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, in_a_row
 from knotwork.arithmetic.kernel import extent
 from knotwork.errors import ParameterError, PointError
 from knotwork.geometry.bezier import raised
@@ -159,9 +159,9 @@ def reduce_bezier(
     if not given.possible:
         return _nothing(len(at) - 1, degree, nets.shape[2])
     found = searched(given, how, degree, progress)
-    G, where = _joined([c.G for c in found])
-    u, path = _joined([c.u for c in found])
-    s, _ = _joined([c.s for c in found])
+    G, where = in_a_row([c.G for c in found])
+    u, path = in_a_row([c.u for c in found])
+    s, _ = in_a_row([c.s for c in found])
     square = np.array([c.square for c in found])
     F, metric, each = given.nets, given.metric, given.each
     sizes = certificate.sizes_of_all(F, at, rational) + certificate.sizes_of_all(G, where, rational)
@@ -245,11 +245,6 @@ def exponents(nets: Array, at: Array, rational: bool) -> Array:
         largest = certificate.sizes_of_all(nets, at, rational).max(axis=1)
     result: Array = np.frexp(largest)[1]
     return result
-
-
-def _joined(parts: list[Array]) -> tuple[Array, Array]:
-    """Return arrays one behind the other, and where each begins."""
-    return np.concatenate(parts), np.concatenate([[0], np.cumsum([len(p) for p in parts])])
 
 
 def _unscaled(G: Array, exponent: int, rational: bool) -> Array:

@@ -124,6 +124,18 @@ def samples_around(S, last, j, k0, k1):
     return a, b
 
 
+@kernel
+def made_one(u, first, end, k, share):
+    """Count places first … end - 1 anew where pieces k - 1 and k become one, the share of the former being known."""
+    for j in range(first, end):
+        if u[j] >= k + 1:
+            u[j] -= 1
+        elif u[j] > k:
+            u[j] = k - 1 + share + (1 - share) * (u[j] - k)
+        elif u[j] > k - 1:
+            u[j] = k - 1 + share * (u[j] - (k - 1))
+
+
 @kernel(inline=False)
 def loosened(S, k, k0, k1, ja, jb, count, room):
     """Take away one copy of the knot before piece k in a window; return 1 if two pieces became one, else 0.
@@ -141,13 +153,7 @@ def loosened(S, k, k0, k1, ja, jb, count, room):
         framed(frame, k0, k1, count)
         return 0
     share = h[k - 1] / (h[k - 1] + h[k])
-    for j in range(ja + 1, jb + 1):
-        if u[j] >= k + 1:
-            u[j] -= 1
-        elif u[j] > k:
-            u[j] = k - 1 + share + (1 - share) * (u[j] - k)
-        elif u[j] > k - 1:
-            u[j] = k - 1 + share * (u[j] - (k - 1))
+    made_one(u, ja + 1, jb + 1, k, share)
     h[k - 1] += h[k]
     top = count if times[0] < DEGREE else min(count, k1 + 1 + DEGREE)
     for i in range(k, top):

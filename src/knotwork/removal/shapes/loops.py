@@ -11,7 +11,7 @@ import math
 from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.shapes.crossings import tangled
 from knotwork.removal.shapes.frame import DEGREE, framed, kept_frame, measured_frame, netted, restored_frame
-from knotwork.removal.shapes.knots import fitted, samples_around, tightened
+from knotwork.removal.shapes.knots import fitted, made_one, samples_around, tightened
 from knotwork.removal.shapes.residuals import footed, measured, rematched
 from knotwork.removal.shapes.window import TARGET, descended, fitted_window, solved
 
@@ -112,13 +112,7 @@ def loosened_around(S, last, k, count, room):
         times[k] -= 1
         return 0
     share = h[k - 1] / (h[k - 1] + h[k])
-    for j in range(last + 1):
-        if u[j] >= k + 1:
-            u[j] -= 1
-        elif u[j] > k:
-            u[j] = k - 1 + share + (1 - share) * (u[j] - k)
-        elif u[j] > k - 1:
-            u[j] = k - 1 + share * (u[j] - (k - 1))
+    made_one(u, 0, last + 1, k, share)
     h[k - 1] += h[k]
     for i in range(k, count):
         h[i], times[i] = h[i + 1], times[i + 1]

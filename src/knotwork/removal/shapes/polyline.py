@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array
+from knotwork.arithmetic.arrays import Array, in_a_row
 from knotwork.arithmetic.kernel import extent
 from knotwork.removal.shapes.certificate import Scaled, path_bounds
 from knotwork.removal.shapes.links import Course, chords
@@ -106,8 +106,7 @@ def _tried(
 ) -> list[int]:  # fmt: skip
     """Search for some of the lines, and put what is proven among the results; return those to be tried again."""
     Y = [lines[i] for i in left]
-    at = np.concatenate([[0], np.cumsum([len(each) for each in Y])])
-    every = np.concatenate(Y)
+    every, at = in_a_row(Y)
     rings = np.array([closed[i] for i in left])
     on_edges = np.ones(len(every)) if strict is None else np.concatenate([np.append(strict[i], 0.0) for i in left])
     on_edges[at[1:] - 1] = 0

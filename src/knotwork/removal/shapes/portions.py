@@ -69,10 +69,14 @@ def along(ends: Array, places: Array) -> Array:
     pieces, k = int(ends[-1]), np.floor(places).astype(np.int64)
     turn, i = np.divmod(k, len(ends) - 1)
     x: Array = ends[i] + (places - k) * (ends[i + 1] - ends[i]) + turn * pieces
-    if x[-1] > pieces:  # the start of a closed curve is such that one turn later is a float too
-        start = (x[0] + pieces) - pieces
-        x = np.clip(x, start, start + pieces)
-        x[0], x[-1] = start, start + pieces
+    return one_turn(x, pieces) if x[-1] > pieces else x
+
+
+def one_turn(places: Array, count: int) -> Array:
+    """Return places once around a curve of so many pieces, the start such that one turn later is a float too."""
+    start = (places[0] + count) - count
+    x: Array = np.clip(places, start, start + count)
+    x[0], x[-1] = start, start + count
     return x
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.arithmetic.arrays import Array, in_floats
+from knotwork.arithmetic.arrays import Array, in_a_row, in_floats
 from knotwork.errors import ParameterError
 from knotwork.geometry.bezier import joined
 from knotwork.geometry.lengths import apart, increasing, linear
@@ -22,7 +22,7 @@ from knotwork.removal.shapes.features import Features, shape_features, turning
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
 from knotwork.removal.shapes.polyline import Polyline, reduce_polylines
-from knotwork.removal.shapes.portions import Portions, along, portioned
+from knotwork.removal.shapes.portions import Portions, along, one_turn, portioned
 from knotwork.removal.shapes.smooth import reduce_smooth
 from knotwork.removal.shapes.thinning import Smooth
 from knotwork.removal.shapes.vertices import vertices
@@ -178,10 +178,10 @@ def _bezier(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
 def _pieces(shapes: Sequence[Shape], degree: int, wanted: Wanted) -> Pieces:
     """Return pieces for shapes that differ in nothing that the search sees."""
     angle, lines, _ = shapes[0].stay
-    at = np.concatenate([[0], np.cumsum([len(shape.pieces) for shape in shapes])])
+    pieces, at = in_a_row([shape.pieces for shape in shapes])
     joints = np.concatenate([start + shape.stay.joints for start, shape in zip(at.tolist(), shapes, strict=False)])
     return reduce_bezier(
-        np.concatenate([shape.pieces for shape in shapes]), at, shapes[0].reach, degree=degree,
+        pieces, at, shapes[0].reach, degree=degree,
         closed=[shape.closed for shape in shapes], angle=angle, lines=lines, keep=joints, effort=wanted.effort,
         crossings=wanted.crossings, joints=wanted.joints, rational=shapes[0].curve.rational, progress=wanted.progress,
         strict=None if shapes[0].strict is None else np.concatenate([shape.strict for shape in shapes]),
@@ -254,9 +254,7 @@ def reduce_shapes(
 
 def _as_large(shapes: Sequence[Shape], group: Sequence[int]) -> Iterator[list[int]]:
     """Part a group of shapes into those that are scaled by the same power of two."""
-    pieces = [shapes[i].pieces for i in group]
-    at = np.concatenate([[0], np.cumsum([len(each) for each in pieces])])
-    by = exponents(np.concatenate(pieces), at, shapes[group[0]].curve.rational)
+    by = exponents(*in_a_row([shapes[i].pieces for i in group]), shapes[group[0]].curve.rational)
     for exponent in np.unique(by):
         yield [group[k] for k in np.flatnonzero(by == exponent).tolist()]
 
@@ -357,11 +355,7 @@ def _by_chords(shape: Shape, wanted: Wanted, low: int) -> Reduction:
             effort=wanted.effort, strict=None if shape.strict is None else [np.repeat(strict, np.diff(by.first))],
         )[0]  # fmt: skip
         made = _straight(shape, found, wanted)
-        g, here = nets(made.spline, curve.rational)
-        given = shape.off + here
-        scaled = Scaled(shape.pieces, g, allowed, rational=curve.rational, given=given, strict=shape.strict)
-        u, s, _ = scaled.refined(found.u, along(by.places, found.s))
-        bound = scaled.bound(u, s)
+        bound, u, s = _proven(shape, made.spline, found.u, along(by.places, found.s))
         if np.all(bound <= allowed):
             return replace(made, bound=bound, lower_bound=low, matching=Matching(s, u, shape.closed))
     if curve.space.degree == 1 and not curve.rational:
@@ -393,13 +387,19 @@ def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
         if len(smooth.points) >= curve.space.dimension:
             return _itself(shape, wanted.effort, low)
         spline = _spline(smooth, curve.space.domain, periodic)
-        g, here = nets(spline, rational)
-        scaled = Scaled(shape.pieces, g, allowed, rational=rational, given=shape.off + here, strict=shape.strict)
-        u, s, _ = scaled.refined(*_around(smooth, len(shape.pieces), len(g)))
-        bound = scaled.bound(u, s)
+        bound, u, s = _proven(shape, spline, *_around(smooth, len(shape.pieces), len(smooth.lengths)))
         if np.all(bound <= allowed):  # all but for rounding
             return Reduction(spline, bound, "geometric", (), low, None, Matching(s, u, closed), wanted.effort)
     return _bezier(shape, degree, wanted._replace(progress=None))
+
+
+def _proven(shape: Shape, spline: Spline, u: Array, s: Array) -> tuple[Any, Array, Array]:
+    """Return how far a spline is proven to be from a shape, along a path that is made finer where that helps."""
+    g, here = nets(spline, shape.curve.rational)
+    given = shape.off + here
+    scaled = Scaled(shape.pieces, g, shape.allowed, rational=shape.curve.rational, given=given, strict=shape.strict)
+    u, s, _ = scaled.refined(u, s)
+    return scaled.bound(u, s), u, s
 
 
 def _spline(smooth: Smooth, domain: Sequence[Any], periodic: bool) -> Spline:
@@ -419,12 +419,9 @@ DEGREES = {"spline": (3,), "bezier": (2, 3), "polyline": (1,)}
 
 def _around(found: Smooth, pieces: int, new: int) -> tuple[Array, Array]:
     """Return the path over all of both curves, its start such that one turn later is a float too."""
-    u, s = found.u.copy(), found.s + found.start
-    start = (u[0] + new) - new
-    u = np.clip(u, start, start + new)
-    u[0], u[-1] = start, start + new
+    s = found.s + found.start
     s[-1] = s[0] + pieces
-    return u, s
+    return one_turn(found.u, new), s
 
 
 def breaks_by_length(new: Array, domain: Sequence[Any], closed: bool) -> Array:
