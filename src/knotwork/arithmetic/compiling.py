@@ -24,7 +24,7 @@ class WholeLibrary(codegen.JITCodeLibrary):  # type: ignore[misc]
     inline = False
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        """Optimise each function by itself if it is short; else all of them are at the end, which takes half as long."""
+        """Optimise each function by itself if it is short; to leave that out takes half as long."""
         if self.inline:
             super()._optimize_functions(ll_module)
         else:
