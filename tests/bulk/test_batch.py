@@ -322,6 +322,31 @@ def test_many_are_as_each_alone() -> None:
     assert flat[0].spline.points.tolist() == kw.flatten(curves[0], 0.1).points.tolist()
 
 
+def test_a_fault_of_the_search_is_not_hidden_by_trying_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors of curves are; anything else is raised."""
+    line = kw.curve([[0, 0], [1, 0.1], [2, 0]], 1)
+
+    def faulty(*_: object, **__: object) -> None:
+        raise IndexError("out of bounds")
+
+    monkeypatch.setattr("knotwork.bulk.curves.reduce_shapes", faulty)
+    with pytest.raises(IndexError, match="out of bounds"):
+        reduce_curves([line], 0.5)
+
+
+def test_a_tolerance_that_varies_is_checked_for_each() -> None:
+    """The bounds of many at once know nothing of it."""
+    line = kw.curve(np.random.default_rng(1).standard_normal((40, 2)).cumsum(axis=0), 1)
+
+    def allowed(t: float) -> float:
+        return 0.5 + t / 100
+
+    for form in ("polyline", "bezier"):
+        alone = kw.reduce(line, allowed, distance="geometric", form=form)
+        found = reduce_curves([line], allowed, form=form)[0]
+        assert (found.spline, found.bound) == (alone.spline, alone.bound)
+
+
 @pytest.mark.slow
 def test_joints_are_as_asked_for_with_any_number_of_workers(tmp_path: Path) -> None:
     t = np.linspace(0, 3, 14)

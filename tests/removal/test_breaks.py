@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import knotwork as kw
 from knotwork.errors import ParameterError
-from knotwork.removal.shapes.reducing import over_domain
+from knotwork.geometry.lengths import over_domain
 
 
 @given(

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from knotwork.errors import ParameterError, PointError
+from knotwork.errors import KnotworkError, ParameterError, PointError
 from knotwork.files.lighter import polylines
 from knotwork.files.uncrossed import uncrossed
 from knotwork.geometry import flatten
@@ -21,6 +21,7 @@ from knotwork.removal import fit, reduce
 from knotwork.removal.faces import JOINTS
 from knotwork.removal.shapes.reducing import reduce_shapes
 from knotwork.removal.tolerance import Relative
+from knotwork.removal.varying import varies
 from knotwork.spline import Spline
 
 
@@ -94,7 +95,7 @@ def reduce_curves(
         return Outcome(found.spline, float(np.max(found.bound)))
 
     found: dict[int, Outcome] = {}
-    together = not no_crossings and distance == "geometric" and not isinstance(tolerance, Relative)
+    together = not no_crossings and distance == "geometric" and not varies(tolerance)
     for made in ("bezier", "polyline") if together else ():
         some = [i for i, s in enumerate(splines) if asked(s) == made]
         if not some or (form == "polyline" and joints != JOINTS[0]):
@@ -102,7 +103,7 @@ def reduce_curves(
         given = [splines[i] for i in some]
         try:
             done = reduce_shapes(given, tolerance, form=made, effort=effort, keep=keep, joints=joints)
-        except Exception:  # one of them cannot be reduced: which, is found one by one
+        except KnotworkError:  # one of them cannot be reduced: which, is found one by one
             continue
         found |= {i: Outcome(r.spline, float(np.max(r.bound))) for i, r in zip(some, done, strict=True)}
     return [found[i] if i in found else attempted(one, spline) for i, spline in enumerate(splines)]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import functools
 import math
 import operator
+from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 from math import comb
 from typing import Any
 
@@ -94,6 +96,31 @@ def joined(nets: Array, t: Array, closed: bool) -> Spline:
     if closed:
         return Spline(SplineSpace(n, np.append(np.repeat(t[:-1], n), t[-1]), periodic=True), points)
     return fitting(over_breaks(n, t), np.concatenate([nets[0, :1], points]))
+
+
+def all_joined(nets: Array, at: Array, t: Array, closed: Sequence[bool]) -> list[Spline]:
+    """Return what `joined` does for many curves: one has pieces at[i] … at[i + 1] - 1, and breaks from t[at[i] + i]."""
+    n, d, number = nets.shape[1] - 1, nets.shape[2], np.arange(len(at))
+    first, ends = n * at + number, at + number  # of control points, of breaks
+    points, begins = np.empty((first[-1], d)), np.zeros(first[-1], bool)
+    begins[first[:-1]] = True
+    points[begins], points[~begins] = nets[at[:-1], 0], nets[:, 1:].reshape(-1, d)
+    times = np.full(len(t), n)
+    times[ends[:-1]] += 1
+    times[ends[1:] - 1] += 1
+    knots, rises = np.repeat(t, times), t[1:] > t[:-1]
+    rises[ends[1:-1] - 1] = True
+    with np.errstate(over="ignore"):
+        good = bool(rises.all()) and all_finite(points) and all_finite(t[ends[1:] - 1] - t[ends[:-1]])
+    result, places = [], zip(at.tolist(), ends.tolist(), first.tolist(), (n * ends + 2 * number).tolist(), strict=True)
+    for ring, (here, there) in zip(closed, pairwise(places), strict=True):
+        piece, end, point, knot = zip(here, there, strict=True)
+        if ring or not good:
+            result.append(joined(nets[slice(*piece)], t[slice(*end)], ring))
+        else:
+            space = SplineSpace.trusted(n, knots[slice(*knot)].copy())
+            result.append(Spline.trusted((space,), points[slice(*point)].copy()))
+    return result
 
 
 def over_breaks(n: int, breaks: Any) -> SplineSpace:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +42,7 @@ def increasing(lengths: Array, closed: bool = False, start: float = 0.0) -> Arra
 
 
 def apart(t: Array) -> Array:
-    """Return breaks that increase, moved to the next floats where they do not; the first and the last one stay.
+    """Move breaks that do not increase to the next floats, and return them; the first and the last one stay.
 
     Raises
     ------
@@ -58,6 +61,28 @@ def apart(t: Array) -> Array:
         raise ParameterError(
             f"{len(t) - 1} pieces do not fit into [{a}, {b}]: expected a longer domain, or one nearer 0"
         )
+    return t
+
+
+def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:
+    """Return breaks over a domain whose intervals are to each other as lengths; even ones where all lengths are 0."""
+    return over_domains(lengths, np.array([0, len(lengths)]), [domain], [closed])
+
+
+def over_domains(lengths: Array, at: Array, domains: Sequence[Sequence[Any]], closed: Sequence[bool]) -> Array:
+    """Return such breaks for many curves one behind the other, whose lengths begin at at[i]."""
+    ends, (a, b) = at + np.arange(len(at)), np.array(domains, float).T
+    t: Array
+    t = np.concatenate([increasing(lengths[i:j], c) for (i, j), c in zip(pairwise(at.tolist()), closed, strict=True)])
+    own, last = np.repeat(np.arange(len(a)), np.diff(ends)), ends[1:] - 1
+    size = t[last]
+    with np.errstate(invalid="ignore", over="ignore"):
+        t = a[own] + t / size[own] * (b - a)[own]
+    for i in np.flatnonzero(~(size > 0)):
+        t[ends[i] : ends[i + 1]] = np.linspace(a[i], b[i], ends[i + 1] - ends[i])
+    t[last] = b
+    for i in np.unique(own[1:][(t[1:] <= t[:-1]) & (own[1:] == own[:-1])]):
+        apart(t[ends[i] : ends[i + 1]])
     return t
 
 

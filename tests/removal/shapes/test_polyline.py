@@ -213,13 +213,15 @@ def test_many_lines_at_once_are_what_each_is_alone(seed, d, each):
             assert np.array_equal(a, b)
 
 
-def test_curves_reduced_together_are_what_each_is_alone():
+@pytest.mark.parametrize("tolerance", [0.5, np.array([0.5, 0.25]), kw.relative(0.03)])
+def test_curves_reduced_together_are_what_each_is_alone(tolerance):
     rng = np.random.default_rng(3)
     points = [rng.standard_normal((30, 2)).cumsum(axis=0) * size for size in (1, 1, 0.01, 100)]
     curves = [kw.curve(p, degree, periodic=ring) for p in points for degree in (1, 3) for ring in (False, True)]
+    curves += [kw.curve(points[0][:9], 2, weights=rng.uniform(0.5, 2, 9)), kw.curve(points[3][[0, 0, 1]], 1)]
     for form in ("polyline", "bezier"):
-        some = [curve for curve in curves if form == "bezier" or curve.degree == (1,)]
-        for found, curve in zip(reduce_shapes(some, 0.5, form=form), some, strict=True):
-            alone = kw.reduce(curve, 0.5, distance="geometric", form=form)
+        for found, curve in zip(reduce_shapes(curves, tolerance, form=form), curves, strict=True):
+            alone = kw.reduce(curve, tolerance, distance="geometric", form=form)
             assert found.spline == alone.spline
-            assert found.bound == alone.bound
+            assert found.spline.dim == 2
+            assert np.array_equal(found.bound, alone.bound)

@@ -302,12 +302,10 @@ def searched(
     """Search for pieces near each curve; none where there are none. A long curve is searched part by part."""
     F, at, unit, rational = given.nets, given.at, given.unit, given.rational
     q, d = F.shape[1] - 1, len(unit)
-    cuts = [
-        np.append(np.arange(lo, max(hi - LONG // 2, lo + 1), LONG), hi) for lo, hi in itertools.pairwise(at.tolist())
-    ]
+    cuts = [[*range(lo, max(hi - LONG // 2, lo + 1), LONG), hi] for lo, hi in itertools.pairwise(at.tolist())]
     parts = np.array([len(c) - 1 for c in cuts], np.int64)
     own = np.repeat(np.arange(len(parts)), parts)  # the curve of each part
-    ends = np.append(np.concatenate([np.zeros(0, np.int64), *(c[:-1] for c in cuts)]), len(F))
+    ends = np.array([*itertools.chain.from_iterable(c[:-1] for c in cuts), len(F)], np.int64)
     sizes = np.diff(ends)
     more = rational or q > degree or (q == 1 and efforts[0].everywhere)
     allowed = np.where(sizes > 0, ALLOWED * (sizes + 4), 0) if more else np.maximum(sizes - 1, 0)
@@ -320,7 +318,7 @@ def searched(
         some, i = found[i : i + len(c) - 1], i + len(c) - 1
         if any(some) and (len(some) == 1 or all(some) or not more):
             each = [f or as_pieces(F[lo:hi], degree) for f, (lo, hi) in zip(some, itertools.pairwise(c), strict=True)]
-            whole = _chained(each, F.shape[1:], c - c[0], degree)
+            whole = _chained(each, F.shape[1:], c, degree)
             if more or len(whole.G) < c[-1] - c[0]:
                 result.append(whole)
                 continue
@@ -328,13 +326,13 @@ def searched(
     return result
 
 
-def _chained(parts: list[Found], shape: tuple[int, ...], starts: Array, degree: int) -> Found:
+def _chained(parts: list[Found], shape: tuple[int, ...], starts: list[int], degree: int) -> Found:
     """Return what was found for the parts of one curve as one."""
     if len(parts) == 1:
         return parts[0]
     before = np.cumsum([0, *(len(p.G) for p in parts)])
     u = [p.u[k > 0 :] + before[k] for k, p in enumerate(parts)]
-    s = [p.s[k > 0 :] + starts[k] for k, p in enumerate(parts)]
+    s = [p.s[k > 0 :] + (starts[k] - starts[0]) for k, p in enumerate(parts)]
     square = max((p.square for p in parts), default=0.0)
     G = [np.zeros((0, degree + 1, shape[1])), *(p.G for p in parts)]
     return Found(np.concatenate(G), np.concatenate([np.zeros(0), *u]), np.concatenate([np.zeros(0), *s]), square)

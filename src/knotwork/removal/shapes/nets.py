@@ -84,7 +84,8 @@ def _in_pieces(space: SplineSpace) -> bool:
     if space.periodic or n == 0 or (len(t) - 2) % n or t.item(0) != t.item(1) or t.item(-1) != t.item(-2):
         return False
     first, last = t[1:-1:n], t[n:-1:n]
-    return bool((first[1:] > first[:-1]).all() and (n == 1 or (first == last).all()))
+    rises = np.count_nonzero(first[1:] > first[:-1]) == len(first) - 1
+    return bool(rises and (n == 1 or (first == last).all()))
 
 
 def _cost(space: SplineSpace) -> float:

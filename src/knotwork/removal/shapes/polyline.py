@@ -91,18 +91,18 @@ def reduce_polylines(
     for kept, ring in zip(keep, closed, strict=True):
         if ring and len(kept):
             kept[0] = kept[-1] = kept[0] or kept[-1]
-    result = [itself(Y, tolerance) for Y in lines]
+    result: list[Polyline | None] = [None] * len(lines)
     left = [i for i, Y in enumerate(lines) if len(Y) > 2]
     if left and np.all(np.asarray(tolerance) > 0):
         search = searching(lines[left[0]].shape[1], tolerance, effort)
         for margin in MARGINS:
             left = _tried(lines, tolerance, closed, keep, strict, left, search.within(margin), result) if left else left
-    return result
+    return [found or itself(Y, tolerance) for found, Y in zip(result, lines, strict=True)]
 
 
 def _tried(
     lines: Sequence[Array], tolerance: Any, closed: Sequence[bool], keep: list[Array], strict: Sequence[Array] | None,
-    left: list[int], search: Search, result: list[Polyline],
+    left: list[int], search: Search, result: list[Polyline | None],
 ) -> list[int]:  # fmt: skip
     """Search for some of the lines, and put what is proven among the results; return those to be tried again."""
     Y = [lines[i] for i in left]
@@ -116,7 +116,7 @@ def _tried(
         *edges(every, at), *edges(V[: v[-1]], v), found.u, found.s, j, tolerance, on_edges[on_edges > 0]
     )
     good = (bounds <= tolerance).reshape(len(left), -1).all(axis=1)
-    again = []
+    again, v, j = [], v.tolist(), j.tolist()
     for k, i in enumerate(left):
         one = V[v[k] : v[k + 1]]
         if len(one) and rings[k] and not _three_different(one):

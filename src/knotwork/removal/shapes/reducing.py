@@ -11,8 +11,8 @@ import numpy as np
 
 from knotwork.arithmetic.arrays import Array, in_a_row, in_floats
 from knotwork.errors import ParameterError
-from knotwork.geometry.bezier import joined
-from knotwork.geometry.lengths import apart, increasing, linear
+from knotwork.geometry.bezier import all_joined, joined
+from knotwork.geometry.lengths import over_domain, over_domains
 from knotwork.removal.features import end_orders
 from knotwork.removal.result import Progress, Reduction, tell
 from knotwork.removal.shapes.between import Matching
@@ -21,7 +21,7 @@ from knotwork.removal.shapes.certificate import Scaled
 from knotwork.removal.shapes.features import Features, shape_features, turning
 from knotwork.removal.shapes.lower import fewest_pieces
 from knotwork.removal.shapes.nets import checked, is_closed, nets
-from knotwork.removal.shapes.polyline import Polyline, reduce_polylines
+from knotwork.removal.shapes.polyline import Polyline, edges, reduce_polylines
 from knotwork.removal.shapes.portions import Portions, along, one_turn, portioned
 from knotwork.removal.shapes.smooth import reduce_smooth
 from knotwork.removal.shapes.thinning import Smooth
@@ -128,7 +128,9 @@ class Shape(NamedTuple):
     @property
     def slack(self) -> Any:
         """How far the nets may be off: a distance, or one in each component."""
-        return self.off if self.each else float(np.sqrt((self.off**2).sum())) * (1 + 2.0**-40) * self.strictest
+        if self.each or not self.off.any():
+            return self.off if self.each else 0.0
+        return float(np.sqrt((self.off**2).sum())) * (1 + 2.0**-40) * self.strictest
 
     @property
     def strict(self) -> Array | None:
@@ -168,7 +170,7 @@ def _bezier(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     """Return pieces of degree 2 or 3 that join."""
     found, closed = _pieces([shape], degree, wanted), shape.closed
     low = degree * _lower_bound(shape, degree) + (not closed)
-    spline = _joined(shape, found, 0, _lengths(found.nets, shape.curve.rational))
+    spline = _joined([shape], found.nets, found.at, shape.curve.rational)[0]
     if spline is None or (shape.portions and len(found.nets) >= shape.number and not _may_grow(shape, degree, wanted)):
         return _itself(shape, wanted.effort, low)
     matching = Matching(found.s + found.start[0], found.u, closed)
@@ -197,14 +199,20 @@ def _lengths(nets: Array, rational: bool) -> Array:
     return result
 
 
-def _joined(shape: Shape, found: Pieces, k: int, lengths: Array) -> Spline | None:
-    """Return the curve of the pieces that were found for shape k, given all their lengths; None if it is itself."""
-    lo, hi = int(found.at[k]), int(found.at[k + 1])
-    if lo == hi:
-        return None
-    new, curve = found.nets[lo:hi], shape.curve
-    t = over_domain(lengths[lo:hi], curve.space.domain, shape.closed)
-    return joined(new[..., :-1] / new[..., -1:] if curve.rational else new, t, shape.closed and curve.space.periodic)
+def _joined(shapes: Sequence[Shape], nets: Array, at: Array, rational: bool) -> list[Spline | None]:
+    """Return the curves of pieces that were found for shapes, those of shape i from at[i] on; None where are none."""
+    result: list[Spline | None] = [None] * len(shapes)
+    some = np.flatnonzero(at[1:] > at[:-1])
+    if not len(some):
+        return result
+    made, at = [shapes[i] for i in some.tolist()], np.append(at[some], at[-1])
+    spaces, closed = [shape.curve.space for shape in made], [shape.closed for shape in made]
+    t = over_domains(_lengths(nets, rational), at, [space.domain for space in spaces], closed)
+    periodic = [ring and space.periodic for ring, space in zip(closed, spaces, strict=True)]
+    new = nets[..., :-1] / nets[..., -1:] if rational else nets
+    for i, spline in zip(some.tolist(), all_joined(new, at, t, periodic), strict=True):
+        result[i] = spline
+    return result
 
 
 def _bound(shape: Shape, found: Pieces, k: int) -> Any:
@@ -215,14 +223,14 @@ def _bound(shape: Shape, found: Pieces, k: int) -> Any:
 
 
 def reduce_shapes(
-    curves: Sequence[Spline], tolerance: float, *, form: str = "bezier", effort: str = "normal", keep: Any = None,
+    curves: Sequence[Spline], tolerance: Any, *, form: str = "bezier", effort: str = "normal", keep: Any = None,
     crossings: str = "none-new", joints: str = "smooth",
 ) -> list[Reduction]:  # fmt: skip
     """Return cubic pieces that join, or polylines, for many curves at once, each as it would be alone, bit for bit.
 
     Left out are the matchings and the lower bounds, which take as long as the search. What makes a search for one
     curve slow is to prepare it; so curves are searched together that differ in nothing that the search sees: dimension,
-    degree, what rounding leaves of the tolerance, and by which power of two they are scaled.
+    degree, the tolerance and what rounding leaves of it (it does not vary), and by which power of two they are scaled.
 
     Raises
     ------
@@ -233,20 +241,21 @@ def reduce_shapes(
     shapes = [Shape.of(curve, tolerance, keep, 0) for curve in curves]
     alike: dict[Any, list[int]] = defaultdict(list)
     for i, shape in enumerate(shapes):
-        alike[shape.curve.rational, shape.pieces.shape[1:], float(shape.reach)].append(i)
+        allowed = [np.asarray(x, float).tobytes() for x in (shape.reach, shape.allowed)]
+        alike[shape.curve.rational, shape.pieces.shape[1:], *allowed].append(i)
     found: dict[int, Reduction] = {}
     for group in alike.values():
         if form == "polyline":
-            found |= {i: _polyline(shapes[i], 1, wanted) for i in group if not _plain(shapes[i].curve)}
+            found |= {i: _polyline(shapes[i], 1, wanted) for i in group if not _plain(shapes[i])}
             plain = [i for i in group if i not in found]
-            lines = _polylines([shapes[i] for i in plain], wanted) if plain else []
-            found |= {i: _straight(shapes[i], line, wanted) for i, line in zip(plain, lines, strict=True)}
+            lines = [shapes[i] for i in plain]
+            found |= zip(plain, _straight(lines, _polylines(lines, wanted), wanted) if lines else (), strict=True)
             continue
         for some in _as_large(shapes, group):
-            result = _pieces([shapes[i] for i in some], DEGREES["bezier"][-1], wanted)
-            lengths = _lengths(result.nets, shapes[some[0]].curve.rational)
-            for k, i in enumerate(some):
-                made = _joined(shapes[i], result, k, lengths)
+            own = [shapes[i] for i in some]
+            result = _pieces(own, DEGREES["bezier"][-1], wanted)
+            joint = _joined(own, result.nets, result.at, own[0].curve.rational)
+            for k, (i, made) in enumerate(zip(some, joint, strict=True)):
                 bound = 0.0 if made is None else _bound(shapes[i], result, k)
                 found[i] = Reduction(shapes[i].curve if made is None else made, bound, "geometric", effort=effort)
     return [found[i] for i in range(len(curves))]
@@ -301,17 +310,23 @@ def _itself(shape: Shape, effort: str, low: int) -> Reduction:
 def _polyline(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
     """Return fewer straight edges of a polyline, or of the chords of another curve."""
     low = _lower_bound(shape, 1) + (not shape.closed)
-    if not _plain(shape.curve):
+    if not _plain(shape):
         return _by_chords(shape, wanted, low)
     found = _polylines([shape], wanted)[0]
     if shape.portions and len(found.vertices) > shape.number:
         return _itself(shape, wanted.effort, low)
-    return replace(_straight(shape, found, wanted), lower_bound=low, matching=Matching(found.s, found.u, shape.closed))
+    made = _straight([shape], [found], wanted)[0]
+    return replace(made, lower_bound=low, matching=Matching(found.s, found.u, shape.closed))
 
 
-def _plain(curve: Spline) -> bool:
+def _plain(shape: Shape) -> bool:
     """Tell whether a curve is a polyline that does not jump."""
-    return curve.space.degree == 1 and not curve.rational and not _jumps(curve)
+    curve = shape.curve
+    if curve.space.degree != 1 or curve.rational:
+        return False
+    # where there are as many points as simple knots have, none of these is looked at
+    simple = shape.portions is None and len(curve.coefficients) == len(shape.pieces) + (not curve.space.periodic)
+    return simple or not _jumps(curve)
 
 
 def _jumps(curve: Spline) -> bool:
@@ -321,21 +336,21 @@ def _jumps(curve: Spline) -> bool:
 def _polylines(shapes: Sequence[Shape], wanted: Wanted) -> list[Polyline]:
     """Return few vertices for polylines of one dimension and tolerance."""
     lines = [np.concatenate([shape.pieces[:, 0], shape.pieces[-1:, -1]]) for shape in shapes]
-    keep = [_kept(shape, np.arange(len(shape.pieces) + 1), wanted) for shape in shapes]
+    keep = [_kept(shape, None, wanted) for shape in shapes]
     closed = [shape.closed for shape in shapes]
     strict = None if shapes[0].portions is None else [shape.portions.strict for shape in shapes if shape.portions]
     return reduce_polylines(lines, shapes[0].allowed, closed=closed, keep=keep, effort=wanted.effort, strict=strict)
 
 
-def _kept(shape: Shape, first: Array, wanted: Wanted) -> Array:
-    """Return which vertices stay, where the pieces begin at those `first`."""
+def _kept(shape: Shape, first: Array | None, wanted: Wanted) -> Array:
+    """Return which vertices stay, where the pieces begin at those `first`; None: each at its own."""
     angle, _, joints = shape.stay
-    stay = np.zeros(first[-1] + 1, bool)
-    stay[first[joints]] = True
-    if angle is not None:
-        stay[first[turning(shape.pieces, shape.curve.rational, angle)]] = True
+    stay = np.zeros(len(shape.pieces) + 1 if first is None else first[-1] + 1, bool)
+    for some in (joints, () if angle is None else turning(shape.pieces, shape.curve.rational, angle)):
+        if len(some):
+            stay[some if first is None else first[some]] = True
     if not shape.closed:
-        stay[[0, -1]] = [order is not None for order in end_orders(wanted.ends)]
+        stay[0], stay[-1] = (order is not None for order in end_orders(wanted.ends))
     return stay
 
 
@@ -354,7 +369,7 @@ def _by_chords(shape: Shape, wanted: Wanted, low: int) -> Reduction:
             [by.points], allowed * (1 - share), closed=[shape.closed], keep=[_kept(shape, by.first, wanted)],
             effort=wanted.effort, strict=None if shape.strict is None else [np.repeat(strict, np.diff(by.first))],
         )[0]  # fmt: skip
-        made = _straight(shape, found, wanted)
+        made = _straight([shape], [found], wanted)[0]
         bound, u, s = _proven(shape, made.spline, found.u, along(by.places, found.s))
         if np.all(bound <= allowed):
             return replace(made, bound=bound, lower_bound=low, matching=Matching(s, u, shape.closed))
@@ -364,12 +379,14 @@ def _by_chords(shape: Shape, wanted: Wanted, low: int) -> Reduction:
     raise ParameterError(f"no polyline within the tolerance of a curve of degree {curve.space.degree}: {why}")
 
 
-def _straight(shape: Shape, found: Polyline, wanted: Wanted) -> Reduction:
-    """Return what was found as a spline of degree 1."""
-    V, space, closed = found.vertices, shape.curve.space, shape.closed
-    t = over_domain(np.sqrt(((V[1:] - V[:-1]) ** 2).sum(axis=1)), space.domain, closed)
-    spline = linear(V, t, closed and space.periodic)
-    return Reduction(spline, found.bound, "geometric", effort=wanted.effort)
+def _straight(shapes: Sequence[Shape], found: Sequence[Polyline], wanted: Wanted) -> list[Reduction]:
+    """Return what was found as splines of degree 1."""
+    splines = _joined(shapes, *edges(*in_a_row([line.vertices for line in found])), False)
+    return [
+        Reduction(spline, line.bound, "geometric", effort=wanted.effort)
+        for spline, line in zip(splines, found, strict=True)
+        if spline is not None
+    ]
 
 
 def _smooth(shape: Shape, degree: int, wanted: Wanted) -> Reduction:
@@ -427,15 +444,6 @@ def _around(found: Smooth, pieces: int, new: int) -> tuple[Array, Array]:
 def breaks_by_length(new: Array, domain: Sequence[Any], closed: bool) -> Array:
     """Return breaks over a domain that follow the lengths of pieces."""
     return over_domain(_lengths(new, False), domain, closed)
-
-
-def over_domain(lengths: Array, domain: Sequence[Any], closed: bool) -> Array:
-    """Return breaks over a domain whose intervals are to each other as lengths; even ones where all lengths are 0."""
-    a, b = (float(x) for x in domain)
-    t = increasing(lengths, closed)
-    t = a + t / t[-1] * (b - a) if t[-1] > 0 else np.linspace(a, b, len(lengths) + 1)
-    t[-1] = b
-    return apart(t)
 
 
 def _lower_bound(shape: Shape, degree: int) -> int:
