@@ -97,14 +97,6 @@ def foot(P, Q, y, D):
 
 
 @kernel
-def near(P, Q, y, limit, D):
-    """Tell whether a link comes within the square root of `limit` of a point."""
-    along, chord, square = foot(P, Q, y, D)
-    a = min(max(along, 0.0), chord)
-    return (square - limit) * chord <= a * (2 * along - a) if chord > 0 else square <= limit
-
-
-@kernel
 def passes(P, Q, Y, lo, hi, limit, D):
     """Return -1 if a link passes the points lo … hi - 1 in order, else a point where it fails."""
     ahead, k = 0.0, lo
@@ -187,6 +179,34 @@ def candidate(course, i, r, P):
 
 
 @kernel
+def near(P, course, j, r, k):
+    """Tell whether a link from P to candidate r of station j comes as near point k as is allowed."""
+    along, chord, square = 0.0, 0.0, 0.0
+    for d in range(len(course.D)):
+        q = course.Y[course.at[j], d] + reaches(course, course.at[j]) * course.offsets[r, d] - P[d]
+        v = course.Y[k, d] - P[d]
+        along += q * v
+        chord += q * q
+        square += v * v
+    limit, a = allowed(course.limit, k), min(max(along, 0.0), chord)
+    return (square - limit) * chord <= a * (2 * along - a) if chord > 0 else square <= limit
+
+
+@kernel
+def unreached(P, course, j, r, failing, parent, first):
+    """Return the next candidate of station j from r on that is not reached, and near point `failing` unless it is -1.
+
+    As nothing is written here, what is the same for all candidates is worked out once.
+    """
+    m = len(course.offsets)
+    while r < course.hi[j]:
+        if parent[(j - first) * m + r] == NOT and (failing < 0 or near(P, course, j, r, failing)):
+            break
+        r += 1
+    return r
+
+
+@kernel
 def fewest(course, queue, first, last, only):
     """Reach station `last` from `first` with fewest links, from all its candidates or `only` one; return a candidate.
 
@@ -219,13 +239,13 @@ def fewest(course, queue, first, last, only):
                 if queue.left[j - first] == 0:
                     missed = 0
                     continue
-                for r in range(course.lo[j], course.hi[j]):
-                    number = j * m + r
-                    if parent[number - base] != NOT:
-                        continue
+                following = course.lo[j]
+                while True:
+                    r = unreached(queue.P, course, j, following, failing, parent, first)
+                    if r >= course.hi[j]:
+                        break
+                    following, number = r + 1, j * m + r
                     candidate(course, j, r, queue.Q)
-                    if failing >= 0 and not near(queue.P, queue.Q, course.Y[failing], allowed(limit, failing), D):
-                        continue
                     found = passes(queue.P, queue.Q, course.Y, at[i] + 1, at[j], limit, D)
                     if found >= 0:
                         failing = found
