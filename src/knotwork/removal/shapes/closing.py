@@ -15,11 +15,12 @@ from knotwork.removal.shapes.bezier import Curves
 from knotwork.removal.shapes.crossings import tangled
 from knotwork.removal.shapes.frame import DEGREE, framed, netted
 from knotwork.removal.shapes.knots import tightened
-from knotwork.removal.shapes.loops import FEWEST, loosened_around, mended_around, netted_around, thinned_around
+from knotwork.removal.shapes.loops import FEWEST, loosened_around, netted_around
 from knotwork.removal.shapes.repair import FORCED
 from knotwork.removal.shapes.room import Room
-from knotwork.removal.shapes.search import Found, certified
-from knotwork.removal.shapes.thinning import Path, Smooth, SmoothSearch, certified_smooth
+from knotwork.removal.shapes.search import Found
+from knotwork.removal.shapes.steps import MEND, PROVE, RELAX, THIN, step_around
+from knotwork.removal.shapes.thinning import Path, Smooth, SmoothSearch
 
 #: knots put in on each side of the seam, at most, so that it can go
 HELP = 6
@@ -28,8 +29,6 @@ SMALL = 16
 LARGEST = 24
 #: how far the first sample is behind a knot where a loop is begun anew, in parts of a piece
 SHIFTS = (1 / 3, 2 / 3, 0.0)
-#: the certificate, with a loop fitted anew where it fails
-certified_around = certified.variant(repaired=mended_around)
 
 
 class ClosedSearch(SmoothSearch):
@@ -69,15 +68,15 @@ class ClosedSearch(SmoothSearch):
         self._loosen()
         for _ in range(self.manner.passes):
             before = self._points
-            self._thinned()
+            self._step(THIN)
             if not cornered and self._turned(there):
                 cut_off = np.abs(np.arange(self.count + 1) - self.count / 2) <= 2 * self.effort.reach
                 frame.tried[: self.count + 1][cut_off] = 0  # near the start, windows were
-                self._thinned()
+                self._step(THIN)
             if self._points == before:
                 break
             if self.manner.wider:
-                self._relaxed()
+                self._step(RELAX)
         if not cornered and self.count <= SMALL:
             self._thinned_around()
         self._turn(self.first)
@@ -142,7 +141,7 @@ class ClosedSearch(SmoothSearch):
             before = frame.fixed[: self.count + 1].copy()
             frame.fixed[: self.count + 1] = np.arange(self.count + 1) != seam + 1  # nothing else goes now
             frame.tried[seam + 1] = 0
-            self._thinned()
+            self._step(THIN)
             frame.fixed[: self.count + 1] = np.delete(before, seam + 1) if self.count < len(before) - 1 else before
         self.effort = effort
         frame.tried[: self.count + 1] = 0
@@ -185,12 +184,11 @@ class ClosedSearch(SmoothSearch):
 
     def _loop_found(self) -> bool:
         """Fit a loop, with more knots where it is off, then with fewer; tell whether one is found."""
-        S, nowhere = self.samples, np.zeros(0)
-        self.count = int(mended_around(self.G, S, self.last, self.count, LARGEST, nowhere, self._wide, self.effort))
+        self._step_around(MEND)
         if self.count > LARGEST:
             return False
         self._thinned_around()
-        simple = not (self.effort.simple and tangled(self.G, S, 0, self.count - 1, 0, self.last, self.room))
+        simple = not (self.effort.simple and tangled(self.G, self.samples, 0, self.count - 1, 0, self.last, self.room))
         self._turn(self.first)
         return simple
 
@@ -202,9 +200,13 @@ class ClosedSearch(SmoothSearch):
         while self._points != before:
             before = self._points
             for _ in range(2):
-                self.count = int(thinned_around(self.G, self.samples, self.last, self.count, self._wide, self.effort))
+                self._step_around(THIN)
                 self._turned(np.arange(1, self.last), 2)
                 netted_around(self.G, self.count, self.room)
+
+    def _step_around(self, what: int) -> int:
+        """Take a step with a loop."""
+        return self._step(what, step_around, self._wide, LARGEST)
 
     @functools.cached_property
     def _wide(self) -> Room:
@@ -219,13 +221,13 @@ class ClosedSearch(SmoothSearch):
             return super()._proven()
         if self.count <= SMALL and not frame.fixed[: self.count + 1].any():
             netted_around(self.G, self.count, self.room)
-            return self._certified(certified_around, self._wide, LARGEST, effort)
+            return self._path(self._step_around(PROVE))
         for _ in range(effort.rounds):
-            path = self._certified(certified_smooth, self.room, self.most, effort._replace(rounds=1))
+            path = self._path(self._step(PROVE, effort=effort._replace(rounds=1)))
             if path is not None or not self.end or self.count > self.most:
                 return path
             if self._turned(np.arange(1, self.last)):  # what is near the start is mended now
-                self._mended()
+                self._step(MEND)
                 if self.count > self.most:
                     return None
                 self._turn(self.first)

@@ -217,13 +217,13 @@ def relaxed(G, S, last, count, room, effort):
 
 
 @kernel(inline=False)
-def thinned(G, S, last, count, room, effort, wider):
+def thinned(G, S, last, count, room, effort):
     """Take out knots from the first to the last one, as long as the curve stays near; return how many pieces are left.
 
     Knots that were tried in vain are passed over until one nearby goes; if that was by little, more pieces are fitted
-    again. Bounded: one fit a copy of a knot, and one for each MORE in `wider`.
+    again. Bounded: one fit a copy of a knot, and one for each MORE in effort.wider.
     """
-    frame, rest, more = room.frame, room.frame.rest, 0
+    frame, rest, wider, more = room.frame, room.frame.rest, effort.wider, 0
     parted(G, S, last, count, 0, effort.chunk, room)
     h, times, around = frame.h, frame.times, DEGREE + 1 if frame.times[0] < DEGREE else 1
     k, j = around, 0

@@ -48,6 +48,8 @@ class Effort(NamedTuple):
     everywhere: bool = False
     #: pieces of a smooth curve on each side of a knot that are fitted again
     reach: int = 0
+    #: and how many more, at most, where a fit fails by little
+    wider: int = 0
     #: pieces of a smooth curve that are in their place at once: what goes or comes moves only those behind it
     chunk: int = 0
 

@@ -7,7 +7,6 @@ near. A closed curve is turned at last, so that the place where it was opened is
 
 from __future__ import annotations
 
-import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -17,22 +16,17 @@ from knotwork.arithmetic.kernel import Kernel
 from knotwork.geometry.lengths import SHORTEST
 from knotwork.removal.result import Progress, tell
 from knotwork.removal.shapes.bezier import Curves
-from knotwork.removal.shapes.frame import DEGREE, descended_frame, framed, netted
-from knotwork.removal.shapes.knots import mended, relaxed, thinned
+from knotwork.removal.shapes.frame import DEGREE, framed, netted
 from knotwork.removal.shapes.repair import interpolated
-from knotwork.removal.shapes.residuals import FAIR
 from knotwork.removal.shapes.room import Room
 from knotwork.removal.shapes.samples import finely, merged
-from knotwork.removal.shapes.search import Effort, Found, Search, Task, certified
+from knotwork.removal.shapes.search import Effort, Found, Search, Task
+from knotwork.removal.shapes.steps import FIT, MEND, PROVE, RELAX, THIN, step
 
-#: sweeps of least squares to begin with
-SWEEPS = 3
 #: the least length of a piece to begin with, per mean length: a period cannot have much shorter ones
 LEAST = 1e-4
 #: pieces in their place at once
 CHUNK = 256
-#: the certificate with knots put in where it fails
-certified_smooth = certified.variant(repaired=mended)
 
 
 class Manner(NamedTuple):
@@ -83,7 +77,7 @@ class SmoothSearch(Search):
         super().__init__(size, pieces, given.unit, given.metric, F.shape[1] - 1, given.rational, smooth=True)
         self.F, self.hard, self.progress, self.manner = F, hard, progress, manner
         self.directions, self.strict = given.directions, given.strict
-        self.effort = effort._replace(reach=manner.reach, chunk=CHUNK)
+        self.effort = effort._replace(reach=manner.reach, wider=manner.wider, chunk=CHUNK)
         self.G, self.samples, self.room = self.space.G, self.space.samples, self.space.room
         self.target, self.most = float(given.target()[0]), pieces - 8
         self.count = self.end = self.last = 0
@@ -92,11 +86,8 @@ class SmoothSearch(Search):
         """Find a smooth curve from pieces, or none."""
         self._sampled(found.s, found.u)
         self._begun(found)
-        ends = np.flatnonzero(self.room.frame.fixed[: self.count + 1]).tolist()
-        there = np.flatnonzero(self.samples.hard[: self.last + 1] == 1).tolist()
-        for (k0, k1), (ja, jb) in zip(itertools.pairwise(ends), itertools.pairwise(there), strict=True):
-            descended_frame(self.G, k0, k1 - 1, self.samples, ja, jb, self.room, 1, 1, SWEEPS, FAIR, 0.0)
-        self._mended()
+        self._step(FIT)
+        self._step(MEND)
         path = self._thinner() if self.count <= self.most else None
         return None if path is None else self.result(path, given, periodic)
 
@@ -105,43 +96,34 @@ class SmoothSearch(Search):
         at = self.room.frame.at
         for k in range(self.manner.passes):
             before = at[self.count - 1]
-            self._thinned()
+            self._step(THIN)
             tell(self.progress, (k + 1) / (self.manner.passes + 1))
             if at[self.count - 1] == before and k > 0:
                 break
             if self.manner.wider:
-                self._relaxed()
+                self._step(RELAX)
         return self._proven()
 
     def _proven(self) -> Path | None:
         """Prove what is found, with more knots where that fails."""
-        return self._certified(certified_smooth, self.room, self.most, self.effort)
+        return self._path(self._step(PROVE))
 
-    def _certified(self, certified: Kernel, room: Room, most: int, effort: Effort) -> Path | None:
-        """Prove what is found, or change it where that fails."""
-        task = Task(self.F, self.hard, self.directions, self.target, most, self.strict)
+    def _step(
+        self, what: int, step: Kernel = step, room: Room | None = None, most: int = 0, effort: Effort | None = None
+    ) -> int:
+        """Take a step, in other room than usual or up to another number of pieces; return how many nodes prove it."""
+        task = Task(self.F, self.hard, self.directions, self.target, most or self.most, self.strict)
         while True:
-            space = self.space._replace(room=room)
-            state = certified(task, self.kind, space, self.end, self.last, self.count, effort)
+            space = self.space._replace(room=room or self.room)
+            state = step(what, task, self.kind, space, self.end, self.last, self.count, effort or self.effort)
             self.count, nodes, self.last, self.end = map(int, state)
             if nodes >= 0:
-                break
+                return nodes
             self.longer()
-        if not nodes:
-            return None
-        return Path(self.space.u[:nodes].copy(), self.space.s[:nodes].copy())
 
-    def _mended(self) -> None:
-        places = np.zeros(0)  # everywhere
-        self.count = int(mended(self.G, self.samples, self.last, self.count, self.most, places, self.room, self.effort))
-
-    def _relaxed(self) -> None:
-        relaxed(self.G, self.samples, self.last, self.count, self.room, self.effort)
-
-    def _thinned(self) -> None:
-        self.count = int(
-            thinned(self.G, self.samples, self.last, self.count, self.room, self.effort, self.manner.wider)
-        )
+    def _path(self, nodes: int) -> Path | None:
+        """Return the path of so many nodes, if there is one."""
+        return Path(self.space.u[:nodes].copy(), self.space.s[:nodes].copy()) if nodes else None
 
     def _sampled(self, s: Array, u: Array) -> None:
         """Take samples, with parameters from a path."""
