@@ -24,6 +24,8 @@ from knotwork.removal.shapes.thinning import Path, Smooth, SmoothSearch
 
 #: knots put in on each side of the seam, at most, so that it can go
 HELP = 6
+#: how far from the seam knots are tried again when it has gone, per piece that is fitted again on each side of a knot
+AGAIN = 2
 #: pieces of a loop that is fitted as a whole, and with knots put in, at most
 SMALL = 16
 LARGEST = 24
@@ -70,7 +72,7 @@ class ClosedSearch(SmoothSearch):
             before = self._points
             self._step(THIN)
             if not cornered and self._turned(there):
-                cut_off = np.abs(np.arange(self.count + 1) - self.count / 2) <= 2 * self.effort.reach
+                cut_off = np.abs(np.arange(self.count + 1) - self.count / 2) <= AGAIN * self.effort.reach
                 frame.tried[: self.count + 1][cut_off] = 0  # near the start, windows were
                 self._step(THIN)
             if self._points == before:
@@ -128,7 +130,7 @@ class ClosedSearch(SmoothSearch):
 
         At last it goes although the curve crosses itself nearby: as it did before, but for the smallest change.
         """
-        frame, effort = self.room.frame, self.effort
+        frame, effort, first = self.room.frame, self.effort, self._seam()
         for trial in range(HELP):
             seam = self._seam()
             if not seam:
@@ -144,7 +146,8 @@ class ClosedSearch(SmoothSearch):
             self._step(THIN)
             frame.fixed[: self.count + 1] = np.delete(before, seam + 1) if self.count < len(before) - 1 else before
         self.effort = effort
-        frame.tried[: self.count + 1] = 0
+        near = np.abs(np.arange(self.count + 1) - first) <= AGAIN * effort.reach
+        frame.tried[: self.count + 1][near] = 0
 
     def _seam(self) -> int:
         """Return the knot inside that counts more than once though it need not, or 0."""
