@@ -25,7 +25,12 @@ from knotwork.removal.shapes.thinning import Manner, Smooth, SmoothSearch
 MANNERS = {
     "fast": (Manner(3, 4, 0, 1, 1, 4),),
     "normal": (Manner(3, 5, 0, 2, 1, 4),),
-    "best": (Manner(3, 5, 0, 2, 3, 12), Manner(2, 5, 6, 8, 0, 0), Manner(4, 4, 6, 8, 0, 0)),
+    "best": (
+        Manner(3, 5, 0, 2, 3, 12),
+        Manner(2, 5, 6, 8, 0, 0),
+        Manner(3, 4, 9, 8, 0, 0),
+        Manner(6, 5, 6, 8, 0, 0),
+    ),
 }
 #: the effort for the pieces to begin with: fewer of them leave no fewer knots (four coasts and a drawing)
 PIECES = {"fast": "fast", "normal": "normal", "best": "normal"}
