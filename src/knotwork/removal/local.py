@@ -12,7 +12,8 @@ def refit(q, gone, effort, final, data, links, room):
     """Fit the curve nearby knot q, without it if it is `gone`; return the square of the most that a row is off by.
 
     Of each interval as many rows are taken as the effort says; those that are measured are the same, unless `final`:
-    then all are. With moves, the two knots on each side of where q is or was are tried at other places too.
+    then all are, in the fit that counts. With moves, the two knots on each side of where q is or was are tried at other
+    places before.
     """
     t, n, period = data.t, data.degree, data.period
     k = n + 1
@@ -55,8 +56,9 @@ def refit(q, gone, effort, final, data, links, room):
             side = moved(trial - 1, first, data, links, room)
             if side < 0:
                 continue
-        cost = fitted(u0, u1, low, high, band, count, effort, final, data, links, room)
-        if trial == 0 or cost < best:
+        counts = moves == 0 or trial > moves
+        cost = fitted(u0, u1, low, high, band, count, effort, final and counts, data, links, room)
+        if trial == 0 or counts or cost < best:
             best = cost
         elif trial <= moves:
             move(side, room.back[0], data, room)

@@ -5,7 +5,8 @@ The cost of a knot is the most that the curve is off, anywhere nearby, once it i
 never leaves more knots. When the cheapest knot costs too much, none is left that could go.
 
 Costs are worked out only for a knot that comes up as the cheapest, at first all with cost 0; and anew where removals
-since may have made it dearer.
+since may have changed it. First they are told from some rows, with the other knots where they are; of a knot that is
+still the cheapest then, from all rows, and with better places for the knots beside it.
 Each removal takes a bounded number of B-splines, and each knot goes once, so the search ends.
 """
 
@@ -15,7 +16,7 @@ from knotwork.arithmetic.kernel import kernel
 from knotwork.removal.chain import place
 from knotwork.removal.local import refit, take_out
 
-#: what is known of a knot's cost: nothing that still holds, the cost at some rows, the cost at all rows
+#: what is known of a knot's cost: nothing that still holds, the cost told from some rows, from all rows
 STALE, ROUGH, EXACT = 0, 1, 2
 
 
@@ -69,26 +70,26 @@ def rename(heap, size, data, room, cost, known):
 
 
 @kernel
-def follow(heap, size, least, steps, effort, data, links, room, cost, known, limit):
+def follow(heap, size, least, steps, rough, exact, data, links, room, cost, known, limit):
     """Remove up to `steps` knots while the cheapest costs at most `limit`, a square, and more than `least` could go.
 
-    Returns how many could go still, and whether the road ends here.
+    `rough` and `exact` are the efforts for the two costs of a knot. Returns how many could go still, and whether the road ends here.
     """
     done = 0
     while done < steps:
-        if size <= least or cost[heap[0]] > limit:
+        if size <= least or (known[heap[0]] == EXACT and cost[heap[0]] > limit):
             return size, True
         q = heap[0]
-        exact = known[q] != STALE
-        cost[q] = refit(q, True, effort, exact, data, links, room)
-        known[q] = EXACT if exact else ROUGH
+        final = known[q] != STALE
+        cost[q] = refit(q, True, exact if final else rough, final, data, links, room)
+        known[q] = EXACT if final else ROUGH
         sift(heap, size, 0, cost)
-        if exact and heap[0] == q and cost[q] <= limit:
+        if final and heap[0] == q and cost[q] <= limit:
             size -= 1
             heap[0] = heap[size]
             if size > 0:
                 sift(heap, size, 0, cost)
-            forget(q, effort.around, data, links, known)
+            forget(q, exact.around, data, links, known)
             take_out(q, data, links, room)
             rename(heap, size, data, room, cost, known)
             done += 1

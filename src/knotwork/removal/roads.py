@@ -28,7 +28,7 @@ from knotwork.removal.starts import Start, Starts
 from knotwork.removal.window import Data, Effort, Room
 
 #: rows of an interval that take part in a fit, where it has more
-FEW = 6
+FEW = 12
 #: and where knots move to let another go
 MORE = 24
 #: removals between reports of progress
@@ -52,9 +52,9 @@ class Manner(NamedTuple):
 
 #: the ways that each effort tries; the result with the fewest knots counts
 MANNERS = {
-    "fast": (Manner(2),),
-    "normal": (Manner(2), Manner(2, moves=1)),
-    "best": (Manner(2), Manner(2, moves=1), Manner(4, moves=4)),
+    "fast": (Manner(2, moves=4),),
+    "normal": (Manner(2, moves=4), Manner(4, moves=4)),
+    "best": (Manner(2, moves=4), Manner(4, moves=4)),
 }
 
 
@@ -77,7 +77,8 @@ class Roads:
             start = self.starts.level(manner.first, coarser)
             if int(start.mask.sum()) - (self.data.period > 0) <= max(count, least):
                 break
-            least = max(least, self._count(self._along(start, manner, manner.first * 4.0**-coarser, self.least, None)))
+            enough = max(count, least)
+            least = max(least, self._count(self._along(start, manner, manner.first * 4.0**-coarser, enough, None)))
         if least > count:
             links = self._along(self.starts.level(manner.first, j), manner, limit, least, None)
         return links
@@ -102,10 +103,11 @@ class Roads:
         least_in_heap = max(least - (total - len(heap)), 1 if data.period and total == len(heap) else 0, 0)
         cost, known = np.zeros(places), np.zeros(places, np.int8)
         room, square = room_for(data), limit * limit
-        effort = Effort((n + 5) // 2, FEW, manner.passes, manner.moves, 0.0)
+        rough = Effort((n + 5) // 2, FEW, manner.passes, 0, 0.0)
+        exact = rough._replace(moves=manner.moves)
         size, ended = len(heap), False
         while not ended:
-            size, ended = follow(heap, size, least_in_heap, STEPS, effort, data, links, room, cost, known, square)
+            size, ended = follow(heap, size, least_in_heap, STEPS, rough, exact, data, links, room, cost, known, square)
             if progress is not None:
                 progress(0.9 * (1 - size / max(len(heap), 1)))
         return links
