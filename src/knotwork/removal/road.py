@@ -73,7 +73,8 @@ def rename(heap, size, data, room, cost, known):
 def follow(heap, size, least, steps, rough, exact, data, links, room, cost, known, limit):
     """Remove up to `steps` knots while the cheapest costs at most `limit`, a square, and more than `least` could go.
 
-    `rough` and `exact` are the efforts for the two costs of a knot. Returns how many could go still, and whether the road ends here.
+    `rough` and `exact` are the efforts for the two costs of a knot. Returns how many could go still, and whether the
+    road ends here.
     """
     done = 0
     while done < steps:

@@ -5,8 +5,8 @@ to stop. It never leaves more knots when it is larger: from one start because a 
 coarser start because no result from a finer one is let below what the coarser ones leave at the smallest tolerance that
 leads to them. Only those with more knots than the result can leave more; the others need not be followed. This holds
 for tolerances that are multiples of one another, as far as rounding does not decide. Effort "best" then squeezes knots
-out until the tolerance that is given is used up, here and on a road from what the classic search leaves, and promises
-no such order.
+out until the tolerance that is given is used up, at the end of each road and of one from what the classic search
+leaves, and promises no such order.
 """
 
 from __future__ import annotations
@@ -29,8 +29,6 @@ from knotwork.removal.window import Data, Effort, Room
 
 #: rows of an interval that take part in a fit, where it has more
 FEW = 12
-#: and where knots move to let another go
-MORE = 24
 #: removals between reports of progress
 STEPS = 512
 #: knots that are tried, cheapest first, before squeezing is given up; and tries in all
@@ -116,7 +114,7 @@ class Roads:
         """Return what is left when knots are squeezed out, or None if none goes."""
         around, square, room, best = (self.data.degree + 5) // 2, limit * limit, room_for(self.data), None
         price, force = Effort(around, FEW, 1, 0, 0.0), Effort(around, FEW, 2, 3, 0.0)
-        beside = Effort(around, MORE, 1, 5, square)
+        beside = Effort(around, FEW, 1, 5, square)
         tries, found = 0, True
         while found and tries < TRIES and self._count(links) > self.least:
             found, cost = False, np.full(len(links.alive), np.inf)
@@ -137,7 +135,7 @@ def room_for(data: Data) -> Room:
     """Allocate the working space of a fit."""
     n, d = data.degree, data.d.shape[1]
     most = 4 * (2 * n + 1 + (n + 5) // 2) + 2 * n + 8
-    rows = len(data.d) + MORE + 1
+    rows = len(data.d) + FEW + 1
 
     def ints(*shape: int) -> Array:
         return np.zeros(shape, np.int64)
@@ -191,9 +189,8 @@ def reduced(original: Original, candidates: Array, effort: str, progress: Progre
     free = for_nothing(original, candidates) if original.strict is None else None
     curves = [Roads(Scaled(original, candidates, start)) for start in ([None, free] if free else [None])]
     ways = [(roads, manner) for roads in curves for manner in MANNERS[effort]]
-    found: list[tuple[Found, tuple[Roads, Links] | None]] = []
-    if free and original.admits(free[0]):
-        found.append((free, None))
+    found: list[Found] = [free] if free and original.admits(free[0]) else []
+    ends: list[tuple[Roads, Links]] = []
     for k, (roads, manner) in enumerate(ways):
 
         def tell(part: float, k: int = k) -> None:
@@ -205,20 +202,19 @@ def reduced(original: Original, candidates: Array, effort: str, progress: Progre
             links = roads.left(manner, shrink * limit, tell if shrink == 1 else None)
             result = roads.curve.result(links)
             if original.admits(result[0]):
-                found.append((result, (roads, links)))
+                found.append(result)
+                ends.append((roads, links))
                 break
     if not found:
         return None
-    best, way = min(found, key=lambda each: int(each[0][1].sum()))
-    if effort == "best" and way:
-        roads, links = way
-        limit, manner = roads.curve.limit(), MANNERS["best"][-1]
-        classic = curves[0].from_knots(search(original, candidates & original.space.removable, None)[1], manner)
-        squeezed = [roads.squeezed(links, limit), classic and curves[0].squeezed(classic, curves[0].curve.limit())]
-        best = min((best, *filter(None, squeezed)), key=lambda each: int(each[1].sum()))
+    if effort == "best":
+        mask = search(original, candidates & original.space.removable, None)[1]
+        classic = curves[0].from_knots(mask, MANNERS["best"][-1])
+        ends += [(curves[0], classic)] if classic else []
+        found += filter(None, [roads.squeezed(links, roads.curve.limit()) for roads, links in ends])
     if progress is not None:
         progress(1.0)
-    return best
+    return min(found, key=lambda each: int(each[1].sum()))
 
 
 def for_nothing(original: Original, candidates: Array) -> Found | None:
