@@ -322,16 +322,16 @@ def test_many_are_as_each_alone() -> None:
     assert flat[0].spline.points.tolist() == kw.flatten(curves[0], 0.1).points.tolist()
 
 
-def test_a_fault_of_the_search_is_not_hidden_by_trying_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Errors of curves are; anything else is raised."""
+def test_a_fault_of_the_search_for_many_is_told_and_costs_no_curve(monkeypatch: pytest.MonkeyPatch) -> None:
     line = kw.curve([[0, 0], [1, 0.1], [2, 0]], 1)
 
     def faulty(*_: object, **__: object) -> None:
         raise IndexError("out of bounds")
 
     monkeypatch.setattr("knotwork.bulk.curves.reduce_shapes", faulty)
-    with pytest.raises(IndexError, match="out of bounds"):
-        reduce_curves([line], 0.5)
+    with pytest.warns(RuntimeWarning, match="1 curves are reduced one by one, after IndexError: out of bounds"):
+        found = reduce_curves([line], 0.5)
+    assert found[0].spline == kw.reduce(line, 0.5, distance="geometric", form="polyline").spline
 
 
 def test_a_tolerance_that_varies_is_checked_for_each() -> None:

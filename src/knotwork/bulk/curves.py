@@ -6,6 +6,7 @@ on those beside it, and one that fails has an error instead of a spline.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -104,6 +105,9 @@ def reduce_curves(
         try:
             done = reduce_shapes(given, tolerance, form=made, effort=effort, keep=keep, joints=joints)
         except KnotworkError:  # one of them cannot be reduced: which, is found one by one
+            continue
+        except Exception as exc:  # a fault of ours: neither may it cost the others, nor stay hidden as slowness
+            warnings.warn(f"{len(some)} curves are reduced one by one, after {told(exc)}", RuntimeWarning, stacklevel=2)
             continue
         found |= {i: Outcome(r.spline, float(np.max(r.bound))) for i, r in zip(some, done, strict=True)}
     return [found[i] if i in found else attempted(one, spline) for i, spline in enumerate(splines)]

@@ -145,7 +145,7 @@ def run_part(job: Job, number: int, skip: Mapping[int, str] = NOTHING, bites: Bi
     given = made = 0
     bound, failures, notes = 0.0, [], []
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what files leave out is in the notes, and every bound is written
+        warnings.simplefilter("ignore", UserWarning)  # what files leave out is in the notes, and every bound is written
         for unit in job.source.work(part, 0, job.units(number), skip, job.output, bites or Bites()):
             given += len(unit.outcomes)
             for i, each in enumerate(unit.outcomes):
