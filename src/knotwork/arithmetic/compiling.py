@@ -72,11 +72,11 @@ class PartLibrary(WholeLibrary):
 class WholeCompiler(compiler.CompilerBase):  # type: ignore[misc]
     """Numba's compiler, but for where the code goes."""
 
-    library = WholeLibrary
+    code = WholeLibrary
 
     def define_pipelines(self) -> list[Any]:
         """Return the usual steps."""
-        library = self.library(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        library = self.code(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
         library.inline = self.state.flags.forceinline
         library.enable_object_caching()
         self.state["library"] = library
@@ -86,7 +86,7 @@ class WholeCompiler(compiler.CompilerBase):  # type: ignore[misc]
 class PartCompiler(WholeCompiler):
     """The compiler of parts."""
 
-    library = PartLibrary
+    code = PartLibrary
 
 
 def _dispatcher(bound: FunctionType, options: dict[str, Any]) -> Any:
